@@ -1,0 +1,58 @@
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include "engine/core/params.h"
+
+namespace viscera {
+
+enum class CameraKind { perspective, orthographic, c_arm };
+[[nodiscard]] std::span<const std::string_view> choice_names(CameraKind kind);
+
+/// Camera of a scene. World frame: LPS patient axes, millimetres (x to the patient's left, y to the back, z
+/// to the head).
+struct CameraParams {
+    CameraKind kind = CameraKind::perspective;
+    // perspective, orthographic
+    glm::dvec3 eye_mm{0.0, -600.0, 0.0};
+    glm::dvec3 target_mm{0.0};
+    glm::dvec3 up{0.0, 0.0, 1.0};
+    double vertical_fov_deg = 30.0;
+    double height_mm = 200.0;
+    // c_arm
+    glm::dvec3 isocentre_mm{0.0};
+    double source_axis_distance_mm = 750.0;    ///< SAD
+    double source_image_distance_mm = 1200.0;  ///< SID
+    double detector_height_mm = 300.0;
+    double primary_deg = 0.0;    ///< positioner primary angle: LAO positive (DICOM 0018,1510)
+    double secondary_deg = 0.0;  ///< positioner secondary angle: cranial positive (DICOM 0018,1511)
+    // all
+    double near_mm = 1.0;
+    double far_mm = 10000.0;
+    double orbit_deg_per_s =
+        0.0;  ///< turns the camera about `up` through the target (c_arm: primary angle) as time passes
+
+    void visit(ParamVisitor& v);
+};
+
+/// Matrices of one eye, double precision. Clip space as OpenGL has it (z in [-w, w]).
+struct View {
+    glm::dmat4 view{1.0};        ///< world [mm] to eye
+    glm::dmat4 projection{1.0};  ///< eye to clip
+    glm::dvec3 eye_mm{0.0};      ///< for orthographic: a point on the eye plane
+    glm::dvec3 forward{0.0, 0.0, -1.0};
+    bool orthographic = false;
+
+    [[nodiscard]] glm::dmat4 view_projection() const { return projection * view; }
+    /// Unit direction from the eye through a world point (orthographic: forward).
+    [[nodiscard]] glm::dvec3 direction_to(const glm::dvec3& point_mm) const;
+};
+
+/// View at a time. aspect = width / height > 0. Throws Error(scene) where the camera is degenerate: eye on
+/// target, up along the view, near >= far, SID <= SAD.
+[[nodiscard]] View make_view(const CameraParams& camera, double aspect, double time_s = 0.0);
+
+/// Target UV (origin bottom-left) of a world point; none when the point is behind the eye or not finite.
+[[nodiscard]] std::optional<glm::dvec2> project_to_uv(const View& view, const glm::dvec3& point_mm);
+
+}  // namespace viscera
