@@ -33,16 +33,15 @@ struct ShaderSource {
     static constexpr std::size_t npos = static_cast<std::size_t>(-1);
 };
 
-/// Expands `#include "name"` (relative to glsl/, each file once) and writes `#define`s ("NAME" or "NAME
-/// value") after the
-/// `#version` line, which must be the first line of the main file. Throws Error(gl) naming file and line for
-/// a missing or cyclic include, or a missing #version.
+/// Expands `#include "name"` (relative to glsl/, each file once, whatever `#if` stands around it) and writes
+/// `#define`s ("NAME" or "NAME value") after the `#version` line, which must be the first line of the main
+/// file. Throws Error(gl) naming file and line for a missing or cyclic include, or a missing #version.
 [[nodiscard]] ShaderSource expand_shader(std::string_view name, std::span<const std::string> defines,
                                          const ShaderReader& reader);
 
-/// Rewrites a driver's log so that each line number of the expanded text becomes "file:line". Understands
-/// Mesa
-/// ("0:12(5): error"), NVIDIA ("0(12) : error"), and glslang ("ERROR: 0:12:").
+/// Rewrites a driver's log so that each line number of the expanded text becomes "file:line"; a line made
+/// here becomes "<defines>:n" for the nth define. Understands Mesa ("0:12(5): error"), NVIDIA ("0(12) :
+/// error"), glslang and AMD ("ERROR: 0:12:").
 [[nodiscard]] std::string map_shader_log(std::string_view log, const ShaderSource& source);
 
 /// What one program is made of. Every variant that an effect may use is listed by it, so that all can be
