@@ -1,0 +1,136 @@
+#include "engine/io/file_bytes.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <system_error>
+#include <utility>
+
+#include "engine/core/error.h"
+
+namespace viscera::io {
+
+namespace {
+
+[[noreturn]] void fail(const std::filesystem::path& file, const std::string& what, int error) {
+    throw Error(ErrorCode::file, file.string(), what + ": " + std::generic_category().message(error));
+}
+
+/// Closes a descriptor however the scope is left.
+class Descriptor {
+  public:
+    explicit Descriptor(int value) : value_(value) {}
+    Descriptor(const Descriptor&) = delete;
+    Descriptor& operator=(const Descriptor&) = delete;
+    ~Descriptor() { static_cast<void>(close()); }
+
+    [[nodiscard]] int get() const { return value_; }
+    /// 0, or the error that only closing brings to light (quota, network folders).
+    [[nodiscard]] int close() {
+        const int value = std::exchange(value_, -1);
+        return value >= 0 && ::close(value) != 0 ? errno : 0;
+    }
+
+  private:
+    int value_;
+};
+
+/// Removes the unfinished file unless it has been renamed.
+class Unfinished {
+  public:
+    explicit Unfinished(std::filesystem::path path) : path_(std::move(path)) {}
+    Unfinished(const Unfinished&) = delete;
+    Unfinished& operator=(const Unfinished&) = delete;
+    ~Unfinished() {
+        if (!finished_) {
+            ::unlink(path_.c_str());
+        }
+    }
+    void finish() { finished_ = true; }
+
+  private:
+    std::filesystem::path path_;
+    bool finished_ = false;
+};
+
+/// A name beside the final one that no other thread or process is using.
+std::filesystem::path name_beside(const std::filesystem::path& file) {
+    static std::atomic<unsigned> next{0};
+    std::filesystem::path beside = file;
+    beside.replace_filename("." + file.filename().string() + "." + std::to_string(::getpid()) + "." +
+                            std::to_string(next++) + ".part");
+    return beside;
+}
+
+}  // namespace
+
+std::string read_file(const std::filesystem::path& file, std::size_t most_bytes) {
+    Descriptor descriptor(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
+    if (descriptor.get() < 0) {
+        fail(file, "cannot be opened", errno);
+    }
+    struct stat status {};
+    if (::fstat(descriptor.get(), &status) != 0) {
+        fail(file, "cannot be read", errno);
+    }
+    if (!S_ISREG(status.st_mode)) {
+        throw Error(ErrorCode::file, file.string(), "is not a file");
+    }
+    const auto size = static_cast<std::size_t>(status.st_size);
+    if (size > most_bytes) {
+        throw Error(ErrorCode::file, file.string(),
+                    std::to_string(size) + " bytes are more than the " + std::to_string(most_bytes) +
+                        " that are read");
+    }
+    std::string bytes(size, '\0');
+    std::size_t done = 0;
+    while (done < size) {
+        const ssize_t got = ::read(descriptor.get(), bytes.data() + done, size - done);
+        if (got < 0 && errno != EINTR) {
+            fail(file, "cannot be read", errno);
+        }
+        if (got == 0) {
+            break;
+        }
+        done += got > 0 ? static_cast<std::size_t>(got) : 0;
+    }
+    bytes.resize(done);
+    return bytes;
+}
+
+void write_file(const std::filesystem::path& file, std::string_view bytes) {
+    const std::filesystem::path beside = name_beside(file);
+    Descriptor descriptor(::open(beside.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+    if (descriptor.get() < 0) {
+        fail(file, "cannot be written", errno);
+    }
+    Unfinished unfinished(beside);
+    while (!bytes.empty()) {
+        const ssize_t put = ::write(descriptor.get(), bytes.data(), bytes.size());
+        if (put < 0 && errno != EINTR) {
+            fail(file, "cannot be written", errno);
+        }
+        bytes.remove_prefix(put > 0 ? static_cast<std::size_t>(put) : 0);
+    }
+    if (const int error = descriptor.close(); error != 0) {
+        fail(file, "cannot be written", error);
+    }
+    if (::rename(beside.c_str(), file.c_str()) != 0) {
+        fail(file, "cannot be written", errno);
+    }
+    unfinished.finish();
+}
+
+std::string lower_extension(const std::filesystem::path& file) {
+    std::string extension = file.extension().string();
+    std::ranges::transform(extension, extension.begin(), [](char c) {
+        return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    });
+    return extension;
+}
+
+}  // namespace viscera::io
