@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cerrno>
 #include <system_error>
 #include <utility>
@@ -57,13 +56,21 @@ class Unfinished {
     bool finished_ = false;
 };
 
-/// A name beside the final one that no other thread or process is using.
-std::filesystem::path name_beside(const std::filesystem::path& file) {
-    static std::atomic<unsigned> next{0};
-    std::filesystem::path beside = file;
-    beside.replace_filename("." + file.filename().string() + "." + std::to_string(::getpid()) + "." +
-                            std::to_string(next++) + ".part");
-    return beside;
+/// Opens a new file beside the final one, under a name that no other thread or process is using; gives that
+/// name.
+std::pair<int, std::filesystem::path> open_beside(const std::filesystem::path& file) {
+    constexpr int most_tries = 1000;
+    for (int n = 0;; ++n) {
+        std::filesystem::path beside = file;
+        beside.replace_filename("." + file.filename().string() + "." + std::to_string(n) + ".part");
+        const int descriptor = ::open(beside.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (descriptor >= 0) {
+            return {descriptor, std::move(beside)};
+        }
+        if (errno != EEXIST || n == most_tries) {
+            fail(file, "cannot be written", errno);
+        }
+    }
 }
 
 }  // namespace
@@ -103,11 +110,8 @@ std::string read_file(const std::filesystem::path& file, std::size_t most_bytes)
 }
 
 void write_file(const std::filesystem::path& file, std::string_view bytes) {
-    const std::filesystem::path beside = name_beside(file);
-    Descriptor descriptor(::open(beside.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
-    if (descriptor.get() < 0) {
-        fail(file, "cannot be written", errno);
-    }
+    auto [opened, beside] = open_beside(file);
+    Descriptor descriptor(opened);
     Unfinished unfinished(beside);
     while (!bytes.empty()) {
         const ssize_t put = ::write(descriptor.get(), bytes.data(), bytes.size());
