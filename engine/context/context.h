@@ -43,6 +43,8 @@ struct ContextInfo {
     int minor = 0;
     bool software = false;  ///< llvmpipe, softpipe, swrast, or another rasteriser on the CPU
     std::optional<int> egl_device;
+    std::string
+        remark;  ///< what a user should know: why a machine with a GPU renders in software; mostly empty
 };
 
 /// An OpenGL 3.3+ core context, current on the thread that made it. Destroying it releases it first.
