@@ -1,0 +1,113 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "engine/core/plan.h"
+
+namespace viscera {
+
+/// What the effect of one pass has to do in this frame.
+struct PassWork {
+    bool idle = false;      ///< nothing to draw: no injection, no emitter, an empty region
+    bool region = false;    ///< draws only a part of its targets, or with fewer features
+    bool cacheable = true;  ///< the same key and the same inputs give the same picture
+    std::uint64_t key = 0;  ///< hash of all that the picture depends on besides the inputs; 0: not cacheable
+    std::string_view reason;  ///< in the effect's words; must outlive the frame
+};
+
+enum class PassStatus { culled, idle, cached, reduced, run };
+
+[[nodiscard]] std::string_view to_string(PassStatus status);
+
+struct PassDecision {
+    PassStatus status = PassStatus::culled;
+    std::string_view reason;
+
+    [[nodiscard]] bool draws() const { return status == PassStatus::reduced || status == PassStatus::run; }
+};
+
+/// What one content of the plan is in this frame.
+struct ContentState {
+    std::uint64_t key = 0;   ///< names the picture: equal keys, equal pixels; 0: culled with its pass
+    std::size_t holder = 0;  ///< content whose texture holds the picture: itself, or what stands in for it
+    bool empty = false;      ///< nothing but the clear value of `holder`; its texture holds no such thing
+};
+
+/// What is left to do so that a texture holds the picture when all passes are through.
+struct Settlement {
+    enum class Action { none, clear, copy };
+    std::size_t content = 0;  ///< in whose texture the picture is to lie
+    Action action = Action::none;
+    std::size_t source = 0;  ///< content to copy from, or whose clear value to fill with
+};
+
+/// End of the frame for one Plan::history: settle `current`, then swap the textures of `current` and
+/// `previous`. No swap: `previous` already is what the next frame is to see.
+struct HistoryStep {
+    Settlement settlement;
+    bool swap = false;
+};
+
+/// Decides each frame what need not be done: the heart of 'skip what a scene doesn't need'.
+///
+/// Every content gets a key, made from its pass's key and the keys of all that the pass reads. An idle pass
+/// makes nothing: its contents are their passthrough (or what they modify), or else empty. Going back from
+/// the outputs, a content whose texture already holds its key needs nothing; any other has its writer run,
+/// which in turn demands its inputs. Since contents take turns in one texture, a pass that runs destroys what
+/// stood there: the frame is played through in order until every running pass finds each input in place.
+///
+/// The executor then, in the order of the passes, for each that draws(): clears what it writes, and what it
+/// modifies where the content below (PlanContent::modifies) is empty; reads content c from the texture of
+/// contents()[c].holder, or is told that it is empty. At the end it does outputs(), and once nobody reads
+/// this frame any more, history().
+///
+/// One Schedule belongs to one set of textures. A warm update() allocates nothing.
+class Schedule {
+  public:
+    /// `work`: one per pass; ignored for passes that are not live. `held`: for each plan texture the key that
+    /// it holds, 0 for none (held_after() of the last frame). `imported_keys`: for each Graph::imported a
+    /// hash that changes with its pixels; 0 or missing: changed. Throws Error(usage) on wrong counts.
+    void update(const Plan& plan, std::span<const PassWork> work, std::span<const std::uint64_t> held,
+                std::span<const std::uint64_t> imported_keys = {});
+
+    [[nodiscard]] std::span<const PassDecision> passes() const { return passes_; }
+    [[nodiscard]] std::span<const ContentState> contents() const { return contents_; }
+    [[nodiscard]] std::span<const Settlement> outputs() const { return outputs_; }
+    [[nodiscard]] std::span<const HistoryStep> history() const { return history_; }
+    /// What each plan texture holds when all of the above is done, swaps included. A texture whose pass
+    /// failed holds 0.
+    [[nodiscard]] std::span<const std::uint64_t> held_after() const { return held_after_; }
+
+  private:
+    void name_contents(const Plan& plan, std::span<const PassWork> work, std::span<const std::uint64_t> held,
+                       std::span<const std::uint64_t> imported_keys);
+    void name_pass(const Plan& plan, std::size_t pass, const PassWork& work);
+    void choose_passes(const Plan& plan);
+    bool play(const Plan& plan);
+    bool demand(const Plan& plan, std::size_t content);
+    void find_wanted(const Plan& plan, std::span<const PassWork> work);
+    void give_status(const Plan& plan, std::span<const PassWork> work);
+    void settle_outputs(const Plan& plan);
+    void settle_history(const Plan& plan);
+    Settlement settle(const Plan& plan, std::size_t content, std::size_t where);
+    [[nodiscard]] std::size_t slot(const Plan& plan, std::size_t content) const;
+    [[nodiscard]] bool is_in_place(const Plan& plan, std::size_t content) const;
+    [[nodiscard]] bool history_stands(const PlanHistory& history) const;
+
+    std::uint64_t frame_ = 0;  ///< makes the keys of what is not cacheable unlike any before
+    std::vector<PassDecision> passes_;
+    std::vector<ContentState> contents_;
+    std::vector<Settlement> outputs_;
+    std::vector<HistoryStep> history_;
+    std::vector<std::uint64_t> held_after_;
+    std::vector<std::uint64_t> at_start_;  ///< keys by slot: the plan's textures, then the imported ones
+    std::vector<std::uint64_t> slots_;     ///< the same while the frame is played
+    std::vector<char> runs_;               ///< by pass
+    std::vector<char> wanted_;             ///< by pass: something that is shown depends on it
+    std::vector<char> wanted_contents_;
+};
+
+}  // namespace viscera
