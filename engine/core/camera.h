@@ -19,7 +19,10 @@ struct CameraParams {
     glm::dvec3 up{0.0, 0.0, 1.0};
     double vertical_fov_deg = 30.0;
     double height_mm = 200.0;
-    // c_arm
+    // c_arm: eye in the X-ray source. At angles 0/0 the source is behind the patient and the detector in
+    // front (y towards -y); at primary +90 the detector is at the patient's left. Up is the head. The picture
+    // is looked at from behind the detector, as on the screen in the cath lab: at 0/0 the patient's left is
+    // on the right. At the isocentre detector_height_mm * SAD / SID is seen.
     glm::dvec3 isocentre_mm{0.0};
     double source_axis_distance_mm = 750.0;    ///< SAD
     double source_image_distance_mm = 1200.0;  ///< SID
@@ -42,6 +45,7 @@ struct View {
     glm::dvec3 eye_mm{0.0};      ///< for orthographic: a point on the eye plane
     glm::dvec3 forward{0.0, 0.0, -1.0};
     bool orthographic = false;
+    bool mirrored = false;  ///< left and right change places, so front faces turn clockwise (c_arm)
 
     [[nodiscard]] glm::dmat4 view_projection() const { return projection * view; }
     /// Unit direction from the eye through a world point (orthographic: forward).

@@ -1,38 +1,24 @@
 #include "engine/core/schedule.h"
 
 #include <algorithm>
-#include <bit>
 
 #include "engine/core/error.h"
+#include "engine/core/hash.h"
 
 namespace viscera {
 namespace {
 
-/// Folds a value into a hash; never 0, which stands for 'no key'. The finalizer is that of splitmix64.
-std::uint64_t mix(std::uint64_t hash, std::uint64_t value) {
-    std::uint64_t x = std::rotl(hash, 23) * 0x9e3779b97f4a7c15U + value + 0x9e3779b97f4a7c15U;
-    x = (x ^ (x >> 30U)) * 0xbf58476d1ce4e5b9U;
-    x = (x ^ (x >> 27U)) * 0x94d049bb133111ebU;
-    x ^= x >> 31U;
-    return x != 0 ? x : 1;
-}
-
 // First word of each kind of key, so that two kinds never meet.
-enum class KeyKind : std::uint64_t { empty = 1, imported, imported_unknown, pass, pass_unknown };
-
-std::uint64_t start(KeyKind kind) {
-    return mix(0, static_cast<std::uint64_t>(kind));
-}
+enum class KeyKind { empty, imported, imported_unknown, pass, pass_unknown };
 
 std::uint64_t empty_key(const PlanContent& content) {
-    std::uint64_t key = start(KeyKind::empty);
-    key = mix(key, static_cast<std::uint64_t>(content.format));
-    key = mix(key, static_cast<std::uint64_t>(content.width));
-    key = mix(key, static_cast<std::uint64_t>(content.height));
-    for (const float value : content.clear) {
-        key = mix(key, std::bit_cast<std::uint32_t>(value));
-    }
-    return key;
+    return Hash()
+        .add(KeyKind::empty)
+        .add(content.format)
+        .add(content.width)
+        .add(content.height)
+        .add(content.clear)
+        .value();
 }
 
 bool makes_content(Access access) {
@@ -88,8 +74,11 @@ void Schedule::name_contents(const Plan& plan, std::span<const PassWork> work,
         if (content.imported && !content.writer) {
             const std::size_t i = *content.imported;
             const bool known = i < imported_keys.size() && imported_keys[i] != 0;
-            contents_[c].key = mix(mix(start(known ? KeyKind::imported : KeyKind::imported_unknown), i),
-                                   known ? imported_keys[i] : frame_);
+            contents_[c].key = Hash()
+                                   .add(known ? KeyKind::imported : KeyKind::imported_unknown)
+                                   .add(i)
+                                   .add(known ? imported_keys[i] : frame_)
+                                   .value();
             at_start_[slot(plan, c)] = contents_[c].key;
         }
     }
@@ -110,8 +99,8 @@ void Schedule::name_contents(const Plan& plan, std::span<const PassWork> work,
 void Schedule::name_pass(const Plan& plan, std::size_t pass, const PassWork& work) {
     const auto& bindings = plan.passes[pass].bindings;
     const bool known = work.cacheable && work.key != 0;
-    std::uint64_t inputs = mix(start(known ? KeyKind::pass : KeyKind::pass_unknown), pass);
-    inputs = mix(inputs, known ? work.key : frame_);
+    Hash inputs;
+    inputs.add(known ? KeyKind::pass : KeyKind::pass_unknown).add(pass).add(known ? work.key : frame_);
     for (std::size_t b = 0; b < bindings.size(); ++b) {
         if (!bindings[b].content) {
             continue;
@@ -121,7 +110,7 @@ void Schedule::name_pass(const Plan& plan, std::size_t pass, const PassWork& wor
             input = plan.contents[*input].modifies;
         }
         if (input) {
-            inputs = mix(mix(inputs, b), contents_[*input].key);
+            inputs.add(b).add(contents_[*input].key);
         }
     }
     for (std::size_t b = 0; b < bindings.size(); ++b) {
@@ -131,7 +120,7 @@ void Schedule::name_pass(const Plan& plan, std::size_t pass, const PassWork& wor
         const PlanContent& content = plan.contents[*bindings[b].content];
         ContentState& state = contents_[*bindings[b].content];
         if (!work.idle) {
-            state.key = mix(mix(inputs, b), empty_key(content));
+            state.key = Hash(inputs).add(b).add(empty_key(content)).value();
         } else if (const auto source = content.modifies ? content.modifies : content.passthrough) {
             state = contents_[*source];
         } else {
