@@ -25,4 +25,9 @@ Error::Error(ErrorCode code, std::string where, const std::string& message)
       code_(code),
       where_(std::move(where)) {}
 
+std::string_view Error::message() const noexcept {
+    const std::string_view whole = what();
+    return where_.empty() ? whole : whole.substr(where_.size() + 2);
+}
+
 }  // namespace viscera

@@ -27,6 +27,8 @@ class Error : public std::runtime_error {
 
     [[nodiscard]] ErrorCode code() const noexcept { return code_; }
     [[nodiscard]] const std::string& where() const noexcept { return where_; }
+    /// what() without the place.
+    [[nodiscard]] std::string_view message() const noexcept;
 
   private:
     ErrorCode code_;

@@ -1,0 +1,13 @@
+#include "engine/runtime/assets.h"
+
+#include "engine/core/hash.h"
+#include "engine/io/png.h"
+
+namespace viscera {
+
+std::shared_ptr<const Image> Assets::image(const std::filesystem::path& file) {
+    return shared<Image>(Hash().add(std::string_view(file.native())).value(),
+                         [&file] { return std::make_shared<Image>(io::read_image(file)); });
+}
+
+}  // namespace viscera

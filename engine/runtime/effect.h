@@ -1,0 +1,115 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/core/graph.h"
+#include "engine/core/params.h"
+#include "engine/core/shader_source.h"
+#include "engine/runtime/frame.h"
+
+namespace viscera {
+
+class Assets;
+class Log;
+class Pass;
+class Prepare;
+
+/// One port of an effect: what it reads or writes, and what that is called when the scene says nothing.
+struct Port {
+    std::string name;  ///< "main"
+    Access access = Access::read;
+    std::string target;  ///< default target: "contrast.main"
+    std::string doc;     ///< one sentence
+    // writes only: what the target is made of, unless the scene says otherwise
+    PixelFormat format = PixelFormat::r16f;
+    SizeRule size;
+    std::array<float, 4> clear{0.0F, 0.0F, 0.0F, 0.0F};
+    /// For a read: no fault when nothing writes it. For a write: made only when the scene or another pass
+    /// asks for it.
+    bool optional = false;
+    std::string passthrough;  ///< for a write: the read port that stands in for it while the pass is idle
+    bool overwrites = false;  ///< for a write: draw() sets every pixel of the region, so nothing need be cleared before
+};
+
+/// What there is to do for an effect in one frame.
+struct Work {
+    enum class Kind { idle, region, all };
+    Kind kind = Kind::all;
+    std::string_view reason;  ///< must outlive the frame: a literal, or a string of the effect's own
+    PixelRect region;         ///< region: the part of the target that can differ from its clear value
+    std::uint64_t key = 0;    ///< hash of all the picture depends on besides its inputs; 0: never reuse it
+    std::uint32_t empty_outputs = 0;  ///< bit i: port i of ports() holds nothing but its clear value
+
+    [[nodiscard]] static Work idle(std::string_view reason) { return {.kind = Kind::idle, .reason = reason}; }
+    [[nodiscard]] static Work all(std::uint64_t key) { return {.kind = Kind::all, .key = key}; }
+    [[nodiscard]] static Work in_region(PixelRect region, std::string_view reason, std::uint64_t key) {
+        return {.kind = Kind::region, .reason = reason, .region = region, .key = key};
+    }
+};
+
+/// One step of a picture. Everything but draw() is free of OpenGL and may run without a context.
+class Effect {
+  public:
+    Effect() = default;
+    Effect(const Effect&) = delete;
+    Effect& operator=(const Effect&) = delete;
+    virtual ~Effect() = default;
+
+    /// Visits the parameters; readers fill them. Called before anything else.
+    virtual void visit(ParamVisitor& visitor) = 0;
+    /// Checks what single ranges cannot: combinations of parameters. Throws Error(scene) with a JSON pointer
+    /// relative to the parameters as `where`.
+    virtual void validate() const {}
+    /// Ports under the present parameters.
+    [[nodiscard]] virtual std::vector<Port> ports() const = 0;
+    /// Every program that draw() may use under any parameters, so that all can be validated without a GPU.
+    [[nodiscard]] virtual std::span<const ProgramDesc> programs() const = 0;
+    /// What there is to do this frame. No OpenGL. Reads no asset unless something is to be drawn.
+    [[nodiscard]] virtual Work prepare(Prepare& prepare) = 0;
+    /// Draws into the targets that are bound. The only place with OpenGL.
+    virtual void draw(const Pass& pass) = 0;
+};
+
+/// What prepare() may look at.
+class Prepare {
+  public:
+    virtual ~Prepare() = default;
+    [[nodiscard]] virtual const Frame& frame() const = 0;
+    [[nodiscard]] virtual Assets& assets() = 0;
+    [[nodiscard]] virtual Log& log() = 0;
+    /// Changes whenever the effect's parameters do.
+    [[nodiscard]] virtual std::uint64_t parameters_key() const = 0;
+    /// Whether a port has content this frame: false for a read that nothing writes or whose writer is idle,
+    /// and for a write that nobody needs.
+    [[nodiscard]] virtual bool has(std::string_view port) const = 0;
+    /// Size of a port's target [pixels]; {0, 0} for an unbound port.
+    [[nodiscard]] virtual glm::ivec2 size(std::string_view port) const = 0;
+};
+
+/// Effects by name. Each entry is a factory, so that one scene may use an effect many times.
+class Registry {
+  public:
+    using Factory = std::function<std::unique_ptr<Effect>()>;
+    struct Entry {
+        std::string name;  ///< "contrast.summarize"
+        std::string doc;   ///< one sentence
+        Factory make;
+    };
+
+    /// Throws Error(usage) when the name is taken.
+    void add(std::string name, std::string doc, Factory make);
+    [[nodiscard]] const Entry* find(std::string_view name) const;
+    [[nodiscard]] std::span<const Entry> entries() const { return entries_; }
+
+  private:
+    std::vector<Entry> entries_;
+};
+
+}  // namespace viscera

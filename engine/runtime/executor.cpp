@@ -1,0 +1,312 @@
+#include "engine/runtime/executor.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "engine/core/error.h"
+#include "engine/gl/debug.h"
+
+namespace viscera {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double milliseconds_since(Clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+bool makes_content(Access access) {
+    return access == Access::write || access == Access::modify;
+}
+
+/// The part of `region` that lies on a target, since an effect may ask for more.
+PixelRect confine(const PixelRect& region, glm::ivec2 size) {
+    const int left = std::clamp(region.x, 0, size.x);
+    const int bottom = std::clamp(region.y, 0, size.y);
+    return {left, bottom, std::clamp(region.x + region.width, 0, size.x) - left,
+            std::clamp(region.y + region.height, 0, size.y) - bottom};
+}
+
+}  // namespace
+
+/// One pass's view of the frame while works are collected.
+class Executor::FramePrepare final : public Prepare {
+  public:
+    FramePrepare(Executor& executor, const Frame& frame, std::size_t pass)
+        : executor_(executor), frame_(frame), pass_(pass) {}
+
+    const Frame& frame() const override { return frame_; }
+    Assets& assets() override { return executor_.shared_.assets; }
+    Log& log() override { return executor_.shared_.log; }
+    std::uint64_t parameters_key() const override { return executor_.passes_[pass_].parameters_key; }
+    bool has(std::string_view port) const override {
+        const PlanBinding* binding = find(port);
+        if (binding == nullptr || !binding->content) {
+            return false;
+        }
+        return makes_content(binding->access) || !executor_.schedule_.contents()[*binding->content].empty;
+    }
+    glm::ivec2 size(std::string_view port) const override {
+        const PlanBinding* binding = find(port);
+        if (binding == nullptr || !binding->content) {
+            return {0, 0};
+        }
+        const PlanContent& content = executor_.plan_.contents[*binding->content];
+        return {content.width, content.height};
+    }
+
+  private:
+    const PlanBinding* find(std::string_view port) const {
+        const auto& bindings = executor_.plan_.passes[pass_].bindings;
+        const auto found = std::ranges::find(bindings, port, &PlanBinding::port);
+        return found == bindings.end() ? nullptr : &*found;
+    }
+
+    Executor& executor_;
+    const Frame& frame_;
+    std::size_t pass_;
+};
+
+Executor::Executor(const Pass::Shared& shared, const gl::Capabilities& capabilities, Options options)
+    : shared_(shared), capabilities_(capabilities), options_(options), pool_(shared.gl) {}
+
+void Executor::set_plan(Plan plan, std::vector<ImportedTarget> imported, SceneEffects& effects) {
+    ran_ = false;
+    pool_.reset(plan);
+    plan_ = std::move(plan);
+    imported_ = std::move(imported);
+    passes_.clear();
+    for (std::size_t p = 0; p < plan_.passes.size(); ++p) {
+        PassState state{.effect = effects.effects[p].get(), .parameters_key = effects.parameter_keys[p]};
+        state.ports = state.effect->ports();
+        for (const PlanBinding& binding : plan_.passes[p].bindings) {
+            const auto port = std::ranges::find(state.ports, binding.port, &Port::name);
+            state.port_of_binding.push_back(static_cast<std::size_t>(port - state.ports.begin()));
+        }
+        for (const ProgramDesc& program : state.effect->programs()) {
+            state.programs.push_back(&shared_.shaders.entry(program));
+        }
+        if (options_.timers && capabilities_.gpu_timers()) {
+            state.timer = std::make_unique<gl::GpuTimer>(shared_.gl, capabilities_.software);
+        }
+        passes_.push_back(std::move(state));
+    }
+}
+
+void Executor::run(const Frame& frame, FrameReport& report) {
+    turn_over();
+    import(frame);
+    try {
+        prepare(frame, report);
+        for (std::size_t p = 0; p < passes_.size(); ++p) {
+            PassReport& pass = report.passes[p];
+            const PassDecision& decision = schedule_.passes()[p];
+            pass.status = decision.status;
+            pass.reason = decision.reason;
+            if (decision.draws()) {
+                const Clock::time_point start = Clock::now();
+                draw(frame, p);
+                pass.cpu_ms += milliseconds_since(start);
+            }
+            if (passes_[p].timer) {
+                pass.gpu_ms = passes_[p].timer->latest_ms();
+            }
+        }
+        for (const Settlement& settlement : schedule_.outputs()) {
+            settle(settlement);
+        }
+    } catch (...) {
+        std::ranges::fill(pool_.keys(), 0);
+        throw;
+    }
+    ran_ = true;
+}
+
+void Executor::import(const Frame& frame) {
+    imported_textures_.clear();
+    imported_keys_.clear();
+    for (const ImportedTarget& target : imported_) {
+        const auto found = std::ranges::find(frame.imported, target.name, &ImportedTexture::target);
+        imported_textures_.push_back(gl::Texture::wrap(shared_.gl, found->texture, GL_TEXTURE_2D,
+                                                       {found->width, found->height},
+                                                       gl::texture_format(found->format)));
+        imported_keys_.push_back(found->version);
+    }
+}
+
+void Executor::prepare(const Frame& frame, FrameReport& report) {
+    report.passes.resize(passes_.size());
+    schedule_.begin(plan_, pool_.keys(), imported_keys_);
+    for (std::size_t p = 0; p < passes_.size(); ++p) {
+        PassState& state = passes_[p];
+        const PlanPass& pass = plan_.passes[p];
+        report.passes[p].name = pass.name;
+        report.passes[p].effect = pass.effect;
+        report.passes[p].cpu_ms = 0.0;
+        if (!pass.live) {
+            continue;
+        }
+        const Clock::time_point start = Clock::now();
+        FramePrepare view(*this, frame, p);
+        state.work = state.effect->prepare(view);
+        PassWork work{.idle = state.work.kind == Work::Kind::idle,
+                      .region = state.work.kind == Work::Kind::region,
+                      .key = state.work.key,
+                      .reason = state.work.reason};
+        for (std::size_t b = 0; b < state.port_of_binding.size(); ++b) {
+            work.empty_bindings |= ((state.work.empty_outputs >> state.port_of_binding[b]) & 1U) << b;
+        }
+        schedule_.work(plan_, p, work);
+        report.passes[p].cpu_ms = milliseconds_since(start);
+    }
+    schedule_.decide(plan_);
+}
+
+const gl::Texture& Executor::texture_of(std::size_t content) const {
+    const PlanContent& planned = plan_.contents[content];
+    return planned.imported ? imported_textures_[*planned.imported] : pool_.texture(*planned.texture);
+}
+
+void Executor::draw(const Frame& frame, std::size_t p) {
+    PassState& state = passes_[p];
+    const PlanPass& pass = plan_.passes[p];
+    const gl::DebugGroup group(shared_.gl, pass.name);
+    state.inputs.clear();
+    state.colours.clear();
+    const gl::Texture* depth = nullptr;
+    glm::ivec2 size(0);
+    for (std::size_t b = 0; b < pass.bindings.size(); ++b) {
+        const PlanBinding& binding = pass.bindings[b];
+        const ContentState* content = binding.content ? &schedule_.contents()[*binding.content] : nullptr;
+        const gl::Texture* texture =
+            content == nullptr || content->empty ? nullptr : &texture_of(content->holder);
+        if (!makes_content(binding.access)) {
+            state.inputs.push_back({binding.port, texture});
+            continue;
+        }
+        const bool is_depth = binding.content && info(plan_.contents[*binding.content].format).is_depth;
+        if (is_depth) {
+            depth = texture;
+        } else {
+            state.colours.push_back(texture);
+        }
+        if (texture != nullptr) {
+            size = {texture->width(), texture->height()};
+        }
+    }
+    const gl::Framebuffer& target = pool_.framebuffer(state.colours, depth, pass.name);
+    const bool whole = state.work.kind != Work::Kind::region;
+    const PixelRect all{0, 0, size.x, size.y};
+    const PixelRect region = whole ? all : confine(state.work.region, size);
+
+    if (state.timer) {
+        state.timer->begin();
+    }
+    target.bind();
+    gl::apply(shared_.gl, gl::depth_tested_state, {0, 0, size.x, size.y});
+    clear(state, pass, target);
+    const Pass view(shared_, frame, state.programs, state.inputs, size, region);
+    view.raster(gl::overwrite_state);
+    state.effect->draw(view);
+    if (state.timer) {
+        state.timer->end();
+    }
+    check(pass.name);
+}
+
+void Executor::clear(const PassState& state, const PlanPass& pass, const gl::Framebuffer& target) const {
+    int colour = 0;
+    for (std::size_t b = 0; b < pass.bindings.size(); ++b) {
+        const PlanBinding& binding = pass.bindings[b];
+        if (!makes_content(binding.access)) {
+            continue;
+        }
+        const bool is_depth = binding.content && info(plan_.contents[*binding.content].format).is_depth;
+        const int index = is_depth ? -1 : colour++;
+        if (!binding.content || schedule_.contents()[*binding.content].empty) {
+            continue;
+        }
+        const PlanContent& content = plan_.contents[*binding.content];
+        const bool continues = content.modifies && !schedule_.contents()[*content.modifies].empty;
+        const bool overwritten =
+            state.ports[state.port_of_binding[b]].overwrites && state.work.kind == Work::Kind::all;
+        if (continues || overwritten) {
+            continue;
+        }
+        if (is_depth) {
+            target.clear_depth(content.clear[0]);
+        } else {
+            target.clear_colour(index, content.clear);
+        }
+    }
+}
+
+void Executor::check(std::string_view pass) const {
+    if (!options_.check_errors) {
+        return;
+    }
+    const GLenum error = gl::drain_errors(shared_.gl);
+    if (error != GL_NO_ERROR) {
+        throw Error(ErrorCode::gl, "pass '" + std::string(pass) + "'",
+                    std::string("OpenGL reports: ") + gl::error_name(error));
+    }
+}
+
+void Executor::settle(const Settlement& settlement) {
+    if (settlement.action == Settlement::Action::none) {
+        return;
+    }
+    const gl::Texture& texture = texture_of(settlement.content);
+    const bool is_depth = info(plan_.contents[settlement.content].format).is_depth;
+    const gl::Texture* const colour = is_depth ? nullptr : &texture;
+    const gl::Framebuffer& target = pool_.framebuffer(std::span(&colour, is_depth ? 0 : 1),
+                                                      is_depth ? &texture : nullptr, "settled target");
+    target.bind();
+    gl::apply(shared_.gl, gl::depth_tested_state, {0, 0, texture.width(), texture.height()});
+    if (settlement.action == Settlement::Action::clear) {
+        const auto& value = plan_.contents[settlement.source].clear;
+        if (is_depth) {
+            target.clear_depth(value[0]);
+        } else {
+            target.clear_colour(0, value);
+        }
+        return;
+    }
+    const gl::Texture& source = texture_of(settlement.source);
+    const gl::Texture* const from = is_depth ? nullptr : &source;
+    const gl::Framebuffer& origin =
+        pool_.framebuffer(std::span(&from, is_depth ? 0 : 1), is_depth ? &source : nullptr, "settled source");
+    const gl::Functions& gl = shared_.gl;
+    gl.BindFramebuffer(GL_READ_FRAMEBUFFER, origin.id());
+    gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, target.id());
+    gl.BlitFramebuffer(0, 0, source.width(), source.height(), 0, 0, texture.width(), texture.height(),
+                       is_depth ? GL_DEPTH_BUFFER_BIT : GL_COLOR_BUFFER_BIT, GL_NEAREST);
+}
+
+/// Ends the frame before: only now does nobody look at its outputs any more.
+void Executor::turn_over() {
+    if (!std::exchange(ran_, false)) {
+        return;
+    }
+    for (std::size_t h = 0; h < plan_.history.size(); ++h) {
+        const HistoryStep& step = schedule_.history()[h];
+        settle(step.settlement);
+        if (step.swap) {
+            pool_.swap(*plan_.contents[*plan_.history[h].current].texture,
+                       *plan_.contents[plan_.history[h].previous].texture);
+        }
+    }
+    std::ranges::copy(schedule_.held_after(), pool_.keys().begin());
+}
+
+std::optional<Executor::Output> Executor::output(std::string_view name) const {
+    const auto found = std::ranges::find(plan_.outputs, name, &PlanOutput::target);
+    if (found == plan_.outputs.end() || !ran_) {
+        return std::nullopt;
+    }
+    const ContentState& state = schedule_.contents()[found->content];
+    return Output{state.empty ? nullptr : &texture_of(state.holder), &plan_.contents[found->content]};
+}
+
+}  // namespace viscera

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/core/schedule.h"
+#include "engine/gl/capabilities.h"
+#include "engine/gl/timer.h"
+#include "engine/runtime/pass.h"
+#include "engine/runtime/report.h"
+#include "engine/runtime/scene_graph.h"
+#include "engine/runtime/target_pool.h"
+
+namespace viscera {
+
+/// Runs a plan: asks each effect what there is to do, decides what need not be done, and draws the rest in
+/// order. Knows no effect and no file.
+class Executor {
+  public:
+    struct Options {
+        bool timers = true;
+        bool check_errors = true;
+    };
+
+    Executor(const Pass::Shared& shared, const gl::Capabilities& capabilities, Options options);
+
+    /// Takes a compiled graph and its effects, which must outlive it. Targets of the same size are kept,
+    /// their content is not.
+    void set_plan(Plan plan, std::vector<ImportedTarget> imported, SceneEffects& effects);
+    /// The key of an effect's parameters has changed.
+    void set_parameters_key(std::size_t pass, std::uint64_t key) { passes_[pass].parameters_key = key; }
+
+    /// Draws one frame and fills the report's passes. On an exception nothing counts as held any more.
+    void run(const Frame& frame, FrameReport& report);
+
+    [[nodiscard]] const Plan& plan() const { return plan_; }
+    /// Content of an output in the frame just run: its texture, or null when it holds nothing but `clear`.
+    struct Output {
+        const gl::Texture* texture = nullptr;
+        const PlanContent* content = nullptr;
+    };
+    [[nodiscard]] std::optional<Output> output(std::string_view name) const;
+
+  private:
+    class FramePrepare;
+    struct PassState {
+        Effect* effect = nullptr;
+        std::uint64_t parameters_key = 0;
+        std::vector<Port> ports;
+        std::vector<std::size_t> port_of_binding;
+        std::vector<ShaderLibrary::Entry*> programs;
+        std::vector<Pass::Input> inputs;
+        std::vector<const gl::Texture*> colours;
+        std::unique_ptr<gl::GpuTimer> timer;
+        Work work;
+    };
+
+    void prepare(const Frame& frame, FrameReport& report);
+    void draw(const Frame& frame, std::size_t pass);
+    void settle(const Settlement& settlement);
+    void turn_over();
+    void import(const Frame& frame);
+    void check(std::string_view pass) const;
+    [[nodiscard]] const gl::Texture& texture_of(std::size_t content) const;
+    void clear(const PassState& state, const PlanPass& pass, const gl::Framebuffer& target) const;
+
+    Pass::Shared shared_;
+    const gl::Capabilities& capabilities_;
+    Options options_;
+    Plan plan_;
+    std::vector<ImportedTarget> imported_;
+    std::vector<gl::Texture> imported_textures_;
+    std::vector<std::uint64_t> imported_keys_;
+    TargetPool pool_;
+    Schedule schedule_;
+    std::vector<PassState> passes_;
+    bool ran_ = false;  ///< a frame has been drawn whose history has not turned over yet
+};
+
+}  // namespace viscera

@@ -1,0 +1,92 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/core/camera.h"
+#include "engine/core/pixel_format.h"
+
+namespace viscera {
+
+/// Rectangle in pixels, origin at the bottom left.
+struct PixelRect {
+    int x = 0;
+    int y = 0;
+    int width = 0;
+    int height = 0;
+    [[nodiscard]] bool empty() const { return width <= 0 || height <= 0; }
+    bool operator==(const PixelRect&) const = default;
+};
+
+/// What a host tells effects while frames go by: arrays of floats by name (per-vertex densities, emitters,
+/// contacts). A changed array gets a new version, so that effects know when to redraw.
+class HostValues {
+  public:
+    struct Entry {
+        std::vector<float> values;
+        std::uint64_t version = 0;
+    };
+
+    /// Replaces an array. Allocation-free when the size does not grow.
+    void set(std::string_view name, std::span<const float> values);
+    /// Removes an array; unknown names are ignored.
+    void erase(std::string_view name);
+    /// The array of a name, or null.
+    [[nodiscard]] const Entry* find(std::string_view name) const;
+
+  private:
+    std::map<std::string, Entry, std::less<>> entries_;
+    std::uint64_t next_version_ = 1;
+};
+
+/// A texture of the host that stands for a target of the scene. It is never deleted by viscera.
+struct ImportedTexture {
+    std::string target;
+    unsigned texture = 0;  ///< OpenGL name of a GL_TEXTURE_2D
+    PixelFormat format = PixelFormat::rgba8;
+    int width = 0;
+    int height = 0;
+    bool writable = false;
+    std::uint64_t version =
+        0;  ///< changed by the host whenever the content has changed; 0: changes every frame
+};
+
+/// Who puts OpenGL state back after a frame.
+enum class HostStatePolicy {
+    restore,      ///< viscera saves and restores every state row it may touch
+    host_resets,  ///< the host sets its own state anew; saves the cost of the queries
+};
+
+/// Where the picture goes besides its target. The framebuffer is the caller's own; 0 only when the caller
+/// says so.
+struct Present {
+    bool enabled = false;
+    std::string output;        ///< which output; empty: the scene's first
+    unsigned framebuffer = 0;  ///< OpenGL name
+    PixelRect viewport;        ///< [pixels] of that framebuffer
+    bool flip_y = false;
+};
+
+/// Everything that one frame depends on besides the scene.
+struct Frame {
+    int width = 0;   ///< [pixels]
+    int height = 0;  ///< [pixels]
+    std::uint64_t index = 0;
+    double time_s = 0.0;
+    std::array<View, 2> eyes{};
+    int eye_count = 1;  ///< 1, or 2 (left, right)
+    const HostValues* values = nullptr;
+    std::span<const ImportedTexture> imported;
+    Present present;
+    HostStatePolicy host_state = HostStatePolicy::restore;
+
+    [[nodiscard]] const View& eye() const { return eyes[0]; }
+    [[nodiscard]] double aspect() const { return static_cast<double>(width) / static_cast<double>(height); }
+};
+
+}  // namespace viscera

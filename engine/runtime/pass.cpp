@@ -1,0 +1,58 @@
+#include "engine/runtime/pass.h"
+
+#include <algorithm>
+
+namespace viscera {
+
+Samplers::Samplers(const gl::Functions& gl)
+    : samplers_{gl::Sampler(gl, {.filter = gl::Filter::nearest, .wrap = gl::Wrap::clamp}),
+                gl::Sampler(gl, {.filter = gl::Filter::nearest, .wrap = gl::Wrap::repeat}),
+                gl::Sampler(gl, {.filter = gl::Filter::nearest, .wrap = gl::Wrap::border}),
+                gl::Sampler(gl, {.filter = gl::Filter::linear, .wrap = gl::Wrap::clamp}),
+                gl::Sampler(gl, {.filter = gl::Filter::linear, .wrap = gl::Wrap::repeat}),
+                gl::Sampler(gl, {.filter = gl::Filter::linear, .wrap = gl::Wrap::border})} {}
+
+const gl::Sampler& Samplers::get(gl::Filter filter, gl::Wrap wrap) const {
+    return samplers_[static_cast<std::size_t>(filter) * 3 + static_cast<std::size_t>(wrap)];
+}
+
+const gl::Texture* Pass::texture(std::string_view port) const {
+    const auto found = std::ranges::find(inputs_, port, &Input::port);
+    return found == inputs_.end() ? nullptr : found->texture;
+}
+
+const gl::Program& Pass::use(std::size_t index) const {
+    const gl::Program& program = shared_.shaders.program(*programs_[index]);
+    program.use();
+    return program;
+}
+
+void Pass::bind(const gl::Program& program, std::string_view uniform, std::string_view port,
+                gl::Filter filter, gl::Wrap wrap) const {
+    const gl::Texture* found = texture(port);
+    bind(program, uniform, found == nullptr ? shared_.black : *found, filter, wrap);
+}
+
+void Pass::bind(const gl::Program& program, std::string_view uniform, const gl::Texture& texture,
+                gl::Filter filter, gl::Wrap wrap) const {
+    program.bind(uniform, texture, shared_.samplers.get(filter, wrap));
+}
+
+void Pass::raster(const gl::RasterState& state) const {
+    gl::RasterState confined = state;
+    if (region_ != PixelRect{0, 0, size_.x, size_.y}) {
+        confined.scissor = gl::Rect{region_.x, region_.y, region_.width, region_.height};
+    }
+    gl::apply(gl(), confined, {0, 0, size_.x, size_.y});
+}
+
+void Pass::draw_fullscreen() const {
+    draw_generated(GL_TRIANGLES, 3, 1);
+}
+
+void Pass::draw_generated(GLenum mode, int vertices, int instances) const {
+    shared_.no_vertices.bind();
+    gl().DrawArraysInstanced(mode, 0, vertices, instances);
+}
+
+}  // namespace viscera

@@ -1,0 +1,93 @@
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include <glm/glm.hpp>
+
+#include "engine/core/log.h"
+#include "engine/gl/buffer.h"
+#include "engine/gl/program.h"
+#include "engine/gl/raster_state.h"
+#include "engine/gl/sampler.h"
+#include "engine/runtime/assets.h"
+#include "engine/runtime/effect.h"
+#include "engine/runtime/shader_library.h"
+
+namespace viscera {
+
+/// Samplers that passes choose from.
+class Samplers {
+  public:
+    explicit Samplers(const gl::Functions& gl);
+    [[nodiscard]] const gl::Sampler& get(gl::Filter filter, gl::Wrap wrap) const;
+
+  private:
+    std::array<gl::Sampler, 6> samplers_;
+};
+
+/// What Effect::draw() works with: the targets are bound and cleared, the viewport is set.
+class Pass {
+  public:
+    /// A port of this pass with what it holds; texture: null when it is empty or unbound.
+    struct Input {
+        std::string_view port;
+        const gl::Texture* texture = nullptr;
+    };
+    /// What stays the same for all passes of a renderer.
+    struct Shared {
+        const gl::Functions& gl;
+        ShaderLibrary& shaders;
+        const Samplers& samplers;
+        const gl::Texture& black;
+        const gl::VertexArray& no_vertices;
+        Assets& assets;
+        Log& log;
+    };
+
+    Pass(const Shared& shared, const Frame& frame, std::span<ShaderLibrary::Entry* const> programs,
+         std::span<const Input> inputs, glm::ivec2 size, const PixelRect& region)
+        : shared_(shared),
+          frame_(frame),
+          programs_(programs),
+          inputs_(inputs),
+          size_(size),
+          region_(region) {}
+
+    [[nodiscard]] const gl::Functions& gl() const { return shared_.gl; }
+    [[nodiscard]] const Frame& frame() const { return frame_; }
+    [[nodiscard]] Assets& assets() const { return shared_.assets; }
+    [[nodiscard]] Log& log() const { return shared_.log; }
+    /// Size of the targets [pixels].
+    [[nodiscard]] glm::ivec2 size() const { return size_; }
+    /// The part of the targets that is drawn: what prepare() asked for, or all.
+    [[nodiscard]] const PixelRect& region() const { return region_; }
+    /// Whether a read port has content.
+    [[nodiscard]] bool has(std::string_view port) const { return texture(port) != nullptr; }
+    [[nodiscard]] const gl::Texture* texture(std::string_view port) const;
+
+    /// Puts programs()[index] in use.
+    [[nodiscard]] const gl::Program& use(std::size_t index) const;
+    /// Binds a read port to a sampler uniform; black where the port is empty.
+    void bind(const gl::Program& program, std::string_view uniform, std::string_view port,
+              gl::Filter filter = gl::Filter::nearest, gl::Wrap wrap = gl::Wrap::clamp) const;
+    void bind(const gl::Program& program, std::string_view uniform, const gl::Texture& texture,
+              gl::Filter filter = gl::Filter::linear, gl::Wrap wrap = gl::Wrap::clamp) const;
+
+    /// Sets the whole raster state, confined to region(). Before draw() it is gl::overwrite_state.
+    void raster(const gl::RasterState& state) const;
+    /// Shades every pixel of region() once with the program in use (vertex shader common/fullscreen.vert).
+    void draw_fullscreen() const;
+    /// Draws vertices that the vertex shader makes from gl_VertexID and gl_InstanceID.
+    void draw_generated(GLenum mode, int vertices, int instances) const;
+
+  private:
+    const Shared& shared_;
+    const Frame& frame_;
+    std::span<ShaderLibrary::Entry* const> programs_;
+    std::span<const Input> inputs_;
+    glm::ivec2 size_;
+    PixelRect region_;
+};
+
+}  // namespace viscera

@@ -1,0 +1,112 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/context/context.h"
+#include "engine/core/image.h"
+#include "engine/core/log.h"
+#include "engine/core/plan.h"
+#include "engine/core/scene.h"
+#include "engine/core/shader_source.h"
+#include "engine/runtime/effect.h"
+#include "engine/runtime/frame.h"
+#include "engine/runtime/report.h"
+
+namespace viscera {
+
+struct RendererOptions {
+    LogCallback log;
+    /// Where shaders come from; empty: those embedded in the binary.
+    ShaderReader shaders;
+    /// GPU timer queries around each pass. Never on software renderers.
+    bool timers = true;
+    /// Ask for glGetError after each pass and throw what it says. KHR_debug messages go to the log in any
+    /// case.
+    bool check_errors = true;
+};
+
+/// One target of a frame, read back.
+struct CapturedTarget {
+    std::string name;
+    Image image;
+};
+
+/// The dumped targets of one frame, all together, in the order of the dump list.
+struct CapturedFrame {
+    FrameReport report;
+    std::vector<CapturedTarget> targets;
+};
+
+/// Called on the rendering thread, from render(), poll_captures() or finish_captures(), some frames after the
+/// one captured.
+using CaptureSink = std::function<void(CapturedFrame&&)>;
+
+/// Which targets are read back: the scene's outputs, every target that lives, or names.
+struct DumpRequest {
+    enum class Kind { none, outputs, all, names };
+    Kind kind = Kind::none;
+    std::vector<std::string> names;
+};
+
+/// Renders a scene in the context that is current. Every member must be called with that context current, and
+/// so must the destructor. Throws Error; after a throw the host's state is restored and the renderer stays
+/// usable.
+class Renderer {
+  public:
+    /// Throws Error(context) when the context offers less than OpenGL 3.3 core.
+    Renderer(ProcAddress proc, const Registry& registry, RendererOptions options = {});
+    ~Renderer();
+    Renderer(Renderer&&) noexcept;
+    Renderer& operator=(Renderer&&) noexcept;
+
+    /// Takes a scene; throws Error(scene) that lists every fault and then keeps the scene it had.
+    void set_scene(Scene scene);
+    [[nodiscard]] const Scene& scene() const;
+    /// Changes one parameter of a pass: pointer relative to its parameters ("/cloud/radius_mm"). Throws
+    /// Error(scene).
+    void set_parameter(std::string_view pass, std::string_view pointer, const nlohmann::json& value);
+
+    /// Frame `index` of a sequence: size and camera as the scene gives them, time = index /
+    /// frames_per_second.
+    [[nodiscard]] Frame frame(std::uint64_t index) const;
+    /// A single picture of the scene at a time [s].
+    [[nodiscard]] Frame still(double time_s) const;
+    /// Renders one frame. The report is valid until the next call.
+    const FrameReport& render(const Frame& frame);
+
+    /// Which targets the next frames read back, and who receives them.
+    void set_dump(DumpRequest request, CaptureSink sink);
+    /// Hands over captures that have arrived, without waiting.
+    void poll_captures();
+    /// Waits for all captures and hands them over.
+    void finish_captures();
+    /// Reads one target of the last frame, waiting for it. Throws Error(usage) for a name that the frame does
+    /// not hold.
+    [[nodiscard]] Image read(std::string_view target);
+
+    /// OpenGL name of the texture that holds an output of the last frame; valid until the next render(). 0:
+    /// it is empty.
+    [[nodiscard]] unsigned texture(std::string_view output) const;
+
+    /// The plan of the last frame's size.
+    [[nodiscard]] const Plan& plan() const;
+    /// Compiles every program again from a folder; programs that fail keep their last good form and are
+    /// logged. Number of failures.
+    int reload_shaders(const std::filesystem::path& glsl_folder);
+    [[nodiscard]] Log& log();
+    [[nodiscard]] const ContextInfo& context_info() const;
+    /// Files read and objects made so far.
+    [[nodiscard]] std::size_t asset_count() const;
+
+  private:
+    class Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace viscera

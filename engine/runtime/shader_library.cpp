@@ -1,0 +1,48 @@
+#include "engine/runtime/shader_library.h"
+
+#include <algorithm>
+
+#include "engine/core/error.h"
+
+namespace viscera {
+
+ShaderLibrary::Entry& ShaderLibrary::entry(const ProgramDesc& desc) {
+    const auto found = std::ranges::find(entries_, desc, &Entry::desc);
+    return found == entries_.end() ? entries_.emplace_back(desc, nullptr) : *found;
+}
+
+const gl::Program& ShaderLibrary::program(Entry& entry) {
+    if (!entry.program) {
+        entry.program = compile(entry.desc);
+    }
+    return *entry.program;
+}
+
+int ShaderLibrary::reload(ShaderReader reader) {
+    reader_ = std::move(reader);
+    int failures = 0;
+    for (Entry& entry : entries_) {
+        if (!entry.program) {
+            continue;
+        }
+        try {
+            entry.program = compile(entry.desc);
+        } catch (const Error& error) {
+            ++failures;
+            log_.error(std::string(error.what()) + "\nthe last good program stays in use");
+        }
+    }
+    return failures;
+}
+
+std::unique_ptr<gl::Program> ShaderLibrary::compile(const ProgramDesc& desc) const {
+    const ShaderSource vertex = expand_shader(desc.vertex, desc.defines, reader_);
+    const ShaderSource fragment = expand_shader(desc.fragment, desc.defines, reader_);
+    auto program = std::make_unique<gl::Program>(gl_, vertex, fragment, to_string(desc));
+    if (!program->warnings().empty()) {
+        log_.debug(program->label() + ": " + program->warnings());
+    }
+    return program;
+}
+
+}  // namespace viscera

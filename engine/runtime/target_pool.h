@@ -1,0 +1,50 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "engine/core/plan.h"
+#include "engine/gl/framebuffer.h"
+#include "engine/gl/texture.h"
+
+namespace viscera {
+
+/// The texture objects of a plan, the content key each one holds, and the framebuffers made of them.
+class TargetPool {
+  public:
+    explicit TargetPool(const gl::Functions& gl) : gl_(gl) {}
+
+    /// Makes the textures of a plan; those that fit are kept, but no content is. Throws Error(limit).
+    void reset(const Plan& plan);
+
+    [[nodiscard]] const gl::Texture& texture(std::size_t index) const { return textures_[index]; }
+    /// Gives a texture to the caller, who then deletes it; the pool makes a new one in its place.
+    [[nodiscard]] GLuint release(std::size_t index);
+    /// Content keys, by texture; 0: nothing.
+    [[nodiscard]] std::span<std::uint64_t> keys() { return keys_; }
+    /// Exchanges two textures with what they hold: how a history target turns over.
+    void swap(std::size_t a, std::size_t b);
+
+    /// Framebuffer of some colours (null entries discard their output) and a depth; made once.
+    [[nodiscard]] const gl::Framebuffer& framebuffer(std::span<const gl::Texture* const> colours,
+                                                     const gl::Texture* depth, std::string_view label);
+
+  private:
+    static constexpr std::size_t attachments = gl::draw_buffers + 1;
+    using Ids = std::array<GLuint, attachments>;
+    struct Entry {
+        Ids ids{};
+        std::unique_ptr<gl::Framebuffer> framebuffer;
+    };
+
+    const gl::Functions& gl_;
+    std::vector<PlanTexture> descriptions_;
+    std::vector<gl::Texture> textures_;
+    std::vector<std::uint64_t> keys_;
+    std::vector<Entry> framebuffers_;
+};
+
+}  // namespace viscera

@@ -1,0 +1,49 @@
+#version 330 core
+// What the detector shows: the densest of all contrast darkens the background.
+uniform float u_background_level;
+#ifdef BACKGROUND
+uniform sampler2D u_background;
+#endif
+#ifdef SUMMARY
+uniform sampler2D u_summary;
+#endif
+#ifdef REFLUX
+uniform sampler2D u_reflux;
+#endif
+#ifdef EXTRAVASATE
+uniform sampler2D u_extravasate;
+#endif
+#ifdef CAPILLARY
+uniform sampler2D u_capillary;
+in vec2 v_uv;
+#endif
+uniform float u_attenuation;  // -log of the transmission at ratio 1
+layout(location = 0) out float o_final;
+
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    float ratio = 0.0;
+#ifdef SUMMARY
+    ratio = max(ratio, texelFetch(u_summary, pixel, 0).r);
+#endif
+#ifdef REFLUX
+    ratio = max(ratio, texelFetch(u_reflux, pixel, 0).r);
+#endif
+#ifdef EXTRAVASATE
+    ratio = max(ratio, texelFetch(u_extravasate, pixel, 0).r);
+#endif
+#ifdef CAPILLARY
+    // Blurred, so that it may be kept at a lower resolution.
+    ratio = max(ratio, texture(u_capillary, v_uv).r);
+#endif
+#ifdef BACKGROUND
+    float background = texelFetch(u_background, pixel, 0).r;
+#else
+    float background = u_background_level;
+#endif
+#ifdef THESIS_TONE
+    o_final = ratio < 0.5 ? mix(background, 0.1, 2.0 * ratio) : 0.15 * ratio;
+#else
+    o_final = background * exp(-u_attenuation * ratio);
+#endif
+}

@@ -1,0 +1,100 @@
+#include "samples/viscera/session.h"
+
+#include <charconv>
+
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include "effects/register_all.h"
+#include "engine/core/error.h"
+
+namespace viscera::app {
+
+LogCallback stderr_log(bool verbose) {
+    auto logger =
+        std::make_shared<spdlog::logger>("viscera", std::make_shared<spdlog::sinks::stderr_color_sink_mt>());
+    logger->set_pattern("%^%l%$: %v");
+    logger->set_level(verbose ? spdlog::level::debug : spdlog::level::info);
+    return [logger](LogLevel level, std::string_view message) {
+        switch (level) {
+            case LogLevel::debug:
+                return logger->debug("{}", message);
+            case LogLevel::info:
+                return logger->info("{}", message);
+            case LogLevel::warning:
+                return logger->warn("{}", message);
+            case LogLevel::error:
+                return logger->error("{}", message);
+        }
+    };
+}
+
+Registry make_registry() {
+    Registry registry;
+    register_all(registry);
+    return registry;
+}
+
+void ContextArguments::add_to(CLI::App& command) {
+    command.add_option("--backend", backend,
+                       "auto, egl, egl-device, egl-surfaceless, osmesa or glfw; auto tries EGL devices, EGL "
+                       "surfaceless, OSMesa");
+    command.add_option("--egl-device", egl_device,
+                       "index among the EGL devices, as `viscera backends` lists them");
+    command.add_flag("--require-hardware", require_hardware, "refuse software renderers");
+}
+
+std::unique_ptr<Context> ContextArguments::open(const ContextOptions& wanted) const {
+    ContextOptions options = wanted;
+    options.egl_device = egl_device;
+    options.require_hardware = require_hardware;
+    std::vector<Refusal> refusals;
+    std::unique_ptr<Context> context = create_first_context(parse_backends(backend), options, refusals);
+    const LogCallback log = stderr_log();
+    for (const Refusal& refusal : refusals) {
+        log(LogLevel::info, std::string(to_string(refusal.backend)) + " refused: " + refusal.why);
+    }
+    const ContextInfo& info = context->info();
+    log(LogLevel::info, "renders with " + std::string(to_string(info.backend)) + ": " + info.renderer +
+                            ", OpenGL " + info.version + (info.software ? " (software)" : ""));
+    return context;
+}
+
+void SceneArguments::add_to(CLI::App& command) {
+    command.add_option("SCENE", file, "scene file")->required();
+    command
+        .add_option("--set", overrides,
+                    "/json/pointer=value: changes the scene before it is read; may be given many times")
+        ->take_all()
+        ->allow_extra_args(false);
+    command.add_option("--resolution", resolution, "WxH in place of the scene's");
+}
+
+Scene SceneArguments::load() const {
+    std::vector<SceneOverride> parsed;
+    for (const std::string& text : overrides) {
+        parsed.push_back(parse_override(text));
+    }
+    Scene scene = load_scene(file, parsed);
+    if (!resolution.empty()) {
+        std::tie(scene.width, scene.height) = parse_resolution(resolution);
+    }
+    return scene;
+}
+
+std::pair<int, int> parse_resolution(const std::string& text) {
+    const std::size_t cross = text.find('x');
+    int width = 0;
+    int height = 0;
+    const auto number = [](std::string_view part, int& value) {
+        const auto [end, failure] = std::from_chars(part.data(), part.data() + part.size(), value);
+        return failure == std::errc{} && end == part.data() + part.size() && value > 0;
+    };
+    if (cross == std::string::npos || !number(std::string_view(text).substr(0, cross), width) ||
+        !number(std::string_view(text).substr(cross + 1), height)) {
+        throw Error(ErrorCode::usage, "--resolution", "'" + text + "' is not WxH with two positive numbers");
+    }
+    return {width, height};
+}
+
+}  // namespace viscera::app

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "engine/context/context.h"
+#include "engine/core/scene.h"
+#include "engine/runtime/effect.h"
+
+namespace viscera::app {
+
+/// Messages of the library on stderr; stdout is for results.
+[[nodiscard]] LogCallback stderr_log(bool verbose = false);
+
+/// All effects that the app knows.
+[[nodiscard]] Registry make_registry();
+
+/// The options of every command that needs OpenGL.
+struct ContextArguments {
+    std::string backend = "auto";
+    std::optional<int> egl_device;
+    bool require_hardware = false;
+
+    void add_to(CLI::App& command);
+    /// Opens the first that works, says on stderr which and why others were refused.
+    [[nodiscard]] std::unique_ptr<Context> open(const ContextOptions& options = {}) const;
+};
+
+/// The options of every command that takes a scene.
+struct SceneArguments {
+    std::filesystem::path file;
+    std::vector<std::string> overrides;
+    std::string resolution;
+
+    void add_to(CLI::App& command);
+    [[nodiscard]] Scene load() const;
+};
+
+/// "WxH" as two positive numbers. Throws Error(usage).
+[[nodiscard]] std::pair<int, int> parse_resolution(const std::string& text);
+
+}  // namespace viscera::app
