@@ -1,0 +1,319 @@
+#include "engine/gl/program.h"
+
+#include <algorithm>
+#include <array>
+#include <initializer_list>
+#include <optional>
+
+#include "engine/core/error.h"
+#include "engine/gl/debug.h"
+#include "engine/gl/mesh.h"
+
+namespace viscera::gl {
+namespace {
+
+struct AttributeName {
+    Attribute attribute;
+    const char* name;
+};
+constexpr std::array<AttributeName, 5> attribute_names{{{Attribute::position, "a_position"},
+                                                        {Attribute::normal, "a_normal"},
+                                                        {Attribute::uv, "a_uv"},
+                                                        {Attribute::scalar, "a_scalar"},
+                                                        {Attribute::colour, "a_color"}}};
+
+// Of the textures that a Texture can be; any other sampler could never be bound.
+constexpr std::array<GLenum, 7> sampler_types{GL_SAMPLER_2D,
+                                              GL_SAMPLER_3D,
+                                              GL_SAMPLER_2D_SHADOW,
+                                              GL_INT_SAMPLER_2D,
+                                              GL_INT_SAMPLER_3D,
+                                              GL_UNSIGNED_INT_SAMPLER_2D,
+                                              GL_UNSIGNED_INT_SAMPLER_3D};
+
+bool is_sampler(GLenum type) {
+    return std::ranges::find(sampler_types, type) != sampler_types.end();
+}
+
+bool takes(GLenum type, const int* /*value*/) {
+    return type == GL_INT || type == GL_BOOL;
+}
+bool takes(GLenum type, const unsigned* /*value*/) {
+    return type == GL_UNSIGNED_INT || type == GL_BOOL;
+}
+bool takes(GLenum type, const float* /*value*/) {
+    return type == GL_FLOAT;
+}
+bool takes(GLenum type, const glm::vec2* /*value*/) {
+    return type == GL_FLOAT_VEC2;
+}
+bool takes(GLenum type, const glm::vec3* /*value*/) {
+    return type == GL_FLOAT_VEC3;
+}
+bool takes(GLenum type, const glm::vec4* /*value*/) {
+    return type == GL_FLOAT_VEC4;
+}
+bool takes(GLenum type, const glm::ivec2* /*value*/) {
+    return type == GL_INT_VEC2 || type == GL_BOOL_VEC2;
+}
+bool takes(GLenum type, const glm::ivec3* /*value*/) {
+    return type == GL_INT_VEC3 || type == GL_BOOL_VEC3;
+}
+bool takes(GLenum type, const glm::ivec4* /*value*/) {
+    return type == GL_INT_VEC4 || type == GL_BOOL_VEC4;
+}
+bool takes(GLenum type, const glm::mat3* /*value*/) {
+    return type == GL_FLOAT_MAT3;
+}
+bool takes(GLenum type, const glm::mat4* /*value*/) {
+    return type == GL_FLOAT_MAT4;
+}
+
+void send(const Functions& gl, GLint location, GLsizei n, const int* v) {
+    gl.Uniform1iv(location, n, v);
+}
+void send(const Functions& gl, GLint location, GLsizei n, const unsigned* v) {
+    gl.Uniform1uiv(location, n, v);
+}
+void send(const Functions& gl, GLint location, GLsizei n, const float* v) {
+    gl.Uniform1fv(location, n, v);
+}
+void send(const Functions& gl, GLint location, GLsizei n, const glm::vec2* v) {
+    gl.Uniform2fv(location, n, &v->x);
+}
+void send(const Functions& gl, GLint location, GLsizei n, const glm::vec3* v) {
+    gl.Uniform3fv(location, n, &v->x);
+}
+void send(const Functions& gl, GLint location, GLsizei n, const glm::vec4* v) {
+    gl.Uniform4fv(location, n, &v->x);
+}
+void send(const Functions& gl, GLint location, GLsizei n, const glm::ivec2* v) {
+    gl.Uniform2iv(location, n, &v->x);
+}
+void send(const Functions& gl, GLint location, GLsizei n, const glm::ivec3* v) {
+    gl.Uniform3iv(location, n, &v->x);
+}
+void send(const Functions& gl, GLint location, GLsizei n, const glm::ivec4* v) {
+    gl.Uniform4iv(location, n, &v->x);
+}
+void send(const Functions& gl, GLint location, GLsizei n, const glm::mat3* v) {
+    gl.UniformMatrix3fv(location, n, GL_FALSE, &(*v)[0].x);
+}
+void send(const Functions& gl, GLint location, GLsizei n, const glm::mat4* v) {
+    gl.UniformMatrix4fv(location, n, GL_FALSE, &(*v)[0].x);
+}
+
+std::string shader_log(const Functions& gl, GLuint shader) {
+    GLint length = 0;
+    gl.GetShaderiv(shader, GL_INFO_LOG_LENGTH, &length);
+    std::string log(static_cast<std::size_t>(std::max(length, 1)), '\0');
+    gl.GetShaderInfoLog(shader, length, &length, log.data());
+    log.resize(static_cast<std::size_t>(std::max(length, 0)));
+    return log;
+}
+
+std::string program_log(const Functions& gl, GLuint program) {
+    GLint length = 0;
+    gl.GetProgramiv(program, GL_INFO_LOG_LENGTH, &length);
+    std::string log(static_cast<std::size_t>(std::max(length, 1)), '\0');
+    gl.GetProgramInfoLog(program, length, &length, log.data());
+    log.resize(static_cast<std::size_t>(std::max(length, 0)));
+    return log;
+}
+
+/// Compiles one stage; what the driver remarked is added to `warnings`.
+ShaderHandle compile(const Functions& gl, GLenum stage, const ShaderSource& source, std::string_view label,
+                     std::string& warnings) {
+    ShaderHandle shader = ShaderHandle::own(gl, gl.CreateShader(stage));
+    const char* text = source.text.data();
+    const auto length = static_cast<GLint>(source.text.size());
+    gl.ShaderSource(shader.id(), 1, &text, &length);
+    gl.CompileShader(shader.id());
+    GLint compiled = GL_FALSE;
+    gl.GetShaderiv(shader.id(), GL_COMPILE_STATUS, &compiled);
+    const std::string log = map_shader_log(shader_log(gl, shader.id()), source);
+    if (compiled == GL_FALSE) {
+        throw Error(ErrorCode::gl, std::string(label), "does not compile:\n" + log);
+    }
+    warnings += log;
+    return shader;
+}
+
+}  // namespace
+
+Program::Program(const Functions& gl, const ShaderSource& vertex, const ShaderSource& fragment,
+                 std::string_view label, std::span<const std::string> feedback)
+    : handle_(ProgramHandle::own(gl, gl.CreateProgram())), label_(label) {
+    const ShaderHandle vertex_shader = compile(gl, GL_VERTEX_SHADER, vertex, label, warnings_);
+    std::optional<ShaderHandle> fragment_shader;
+    gl.AttachShader(id(), vertex_shader.id());
+    if (!fragment.text.empty()) {
+        fragment_shader = compile(gl, GL_FRAGMENT_SHADER, fragment, label, warnings_);
+        gl.AttachShader(id(), fragment_shader->id());
+    }
+    for (const AttributeName& entry : attribute_names) {
+        gl.BindAttribLocation(id(), static_cast<GLuint>(entry.attribute), entry.name);
+    }
+    if (!feedback.empty()) {
+        std::vector<const char*> names;
+        for (const std::string& name : feedback) {
+            names.push_back(name.c_str());
+        }
+        gl.TransformFeedbackVaryings(id(), static_cast<GLsizei>(names.size()), names.data(),
+                                     GL_INTERLEAVED_ATTRIBS);
+    }
+    gl.LinkProgram(id());
+    GLint linked = GL_FALSE;
+    gl.GetProgramiv(id(), GL_LINK_STATUS, &linked);
+    const std::string log = program_log(gl, id());
+    if (linked == GL_FALSE) {
+        throw Error(ErrorCode::gl, label_, "does not link:\n" + log);
+    }
+    warnings_ += log;
+    // The program keeps its code; the shaders need not stay.
+    gl.DetachShader(id(), vertex_shader.id());
+    if (fragment_shader) {
+        gl.DetachShader(id(), fragment_shader->id());
+    }
+    label_object(gl, GL_PROGRAM, id(), label_);
+    reflect();
+    assign_units();
+}
+
+void Program::reflect() {
+    const Functions& gl = handle_.gl();
+    GLint count = 0;
+    GLint longest = 0;
+    gl.GetProgramiv(id(), GL_ACTIVE_UNIFORMS, &count);
+    gl.GetProgramiv(id(), GL_ACTIVE_UNIFORM_MAX_LENGTH, &longest);
+    std::string buffer(static_cast<std::size_t>(std::max(longest, 1)), '\0');
+    for (GLint i = 0; i < count; ++i) {
+        Uniform uniform;
+        GLsizei length = 0;
+        gl.GetActiveUniform(id(), static_cast<GLuint>(i), longest, &length, &uniform.size, &uniform.type,
+                            buffer.data());
+        uniform.name.assign(buffer.data(), static_cast<std::size_t>(length));
+        uniform.location = gl.GetUniformLocation(id(), uniform.name.c_str());
+        if (uniform.location < 0) {
+            continue;  // in a block
+        }
+        if (uniform.name.ends_with("[0]")) {
+            uniform.name.resize(uniform.name.size() - 3);
+        }
+        uniforms_.push_back(std::move(uniform));
+    }
+    std::ranges::sort(uniforms_, {}, &Uniform::name);
+}
+
+void Program::assign_units() {
+    const Functions& gl = handle_.gl();
+    use();
+    GLuint next = 0;
+    for (Uniform& uniform : uniforms_) {
+        if (!is_sampler(uniform.type)) {
+            continue;
+        }
+        uniform.unit = next;
+        next += static_cast<GLuint>(uniform.size);
+        if (next > editing_unit) {
+            throw Error(ErrorCode::limit, label_,
+                        "samples more than " + std::to_string(editing_unit) + " textures");
+        }
+        std::array<GLint, editing_unit> units{};
+        for (std::size_t i = 0; i < static_cast<std::size_t>(uniform.size); ++i) {
+            units[i] = static_cast<GLint>(uniform.unit + i);
+        }
+        gl.Uniform1iv(uniform.location, uniform.size, units.data());
+    }
+}
+
+const Program::Uniform* Program::find(std::string_view name) const {
+    const auto found = std::ranges::lower_bound(
+        uniforms_, name, {}, [](const Uniform& uniform) { return std::string_view(uniform.name); });
+    return found != uniforms_.end() && found->name == name ? &*found : nullptr;
+}
+
+template <class T>
+void Program::set_array(std::string_view name, std::span<const T> values) const {
+    const Uniform* uniform = find(name);
+    if (uniform == nullptr || values.empty()) {
+        return;
+    }
+    if (!takes(uniform->type, values.data())) {
+        throw Error(ErrorCode::gl, label_,
+                    "uniform '" + std::string(name) + "' has another type than the value given");
+    }
+    const auto size = static_cast<std::size_t>(uniform->size);
+    send(handle_.gl(), uniform->location, static_cast<GLsizei>(std::min(values.size(), size)), values.data());
+}
+
+void Program::set(std::string_view name, std::span<const int> v) const {
+    set_array(name, v);
+}
+void Program::set(std::string_view name, std::span<const unsigned> v) const {
+    set_array(name, v);
+}
+void Program::set(std::string_view name, std::span<const float> v) const {
+    set_array(name, v);
+}
+void Program::set(std::string_view name, std::span<const glm::vec2> v) const {
+    set_array(name, v);
+}
+void Program::set(std::string_view name, std::span<const glm::vec3> v) const {
+    set_array(name, v);
+}
+void Program::set(std::string_view name, std::span<const glm::vec4> v) const {
+    set_array(name, v);
+}
+void Program::set(std::string_view name, std::span<const glm::ivec2> v) const {
+    set_array(name, v);
+}
+void Program::set(std::string_view name, std::span<const glm::ivec3> v) const {
+    set_array(name, v);
+}
+void Program::set(std::string_view name, std::span<const glm::ivec4> v) const {
+    set_array(name, v);
+}
+void Program::set(std::string_view name, std::span<const glm::mat3> v) const {
+    set_array(name, v);
+}
+void Program::set(std::string_view name, std::span<const glm::mat4> v) const {
+    set_array(name, v);
+}
+
+void Program::bind(std::string_view name, const Texture& texture, const Sampler& sampler) const {
+    const Uniform* uniform = find(name);
+    if (uniform == nullptr) {
+        return;
+    }
+    if (!is_sampler(uniform->type)) {
+        throw Error(ErrorCode::gl, label_, "uniform '" + std::string(name) + "' is no sampler");
+    }
+    texture.bind(uniform->unit);
+    sampler.bind(uniform->unit);
+}
+
+void Program::unbind_textures() const {
+    const Functions& gl = handle_.gl();
+    for (const Uniform& uniform : uniforms_) {
+        if (!is_sampler(uniform.type)) {
+            continue;
+        }
+        for (GLuint unit = uniform.unit; unit < uniform.unit + static_cast<GLuint>(uniform.size); ++unit) {
+            gl.ActiveTexture(GL_TEXTURE0 + unit);
+            gl.BindTexture(GL_TEXTURE_2D, 0);
+            gl.BindTexture(GL_TEXTURE_3D, 0);
+            gl.BindSampler(unit, 0);
+        }
+    }
+}
+
+void Program::connect_block(std::string_view name, GLuint binding) const {
+    const Functions& gl = handle_.gl();
+    const GLuint block = gl.GetUniformBlockIndex(id(), std::string(name).c_str());
+    if (block != GL_INVALID_INDEX) {
+        gl.UniformBlockBinding(id(), block, binding);
+    }
+}
+
+}  // namespace viscera::gl

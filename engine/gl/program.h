@@ -1,0 +1,96 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "engine/core/shader_source.h"
+#include "engine/gl/sampler.h"
+#include "engine/gl/texture.h"
+
+namespace viscera::gl {
+
+/// A linked shader program. Vertex inputs named a_position, a_normal, a_uv, a_scalar and a_color have the
+/// locations that Mesh fills; each sampler has a texture unit of its own, given at link time.
+///
+/// The setters act on the program in use: call use() first. Nothing is allocated. A name that no shader uses
+/// is ignored, because compilers drop unused uniforms; has_uniform() tells, and a type that does not fit is
+/// an Error(gl).
+class Program {
+  public:
+    /// Throws Error(gl) with the driver's log, in which lines of the expanded text have become "file:line";
+    /// Error(limit) when it needs more textures than there are units. An empty fragment source makes a
+    /// program for transform feedback, which writes `feedback` interleaved.
+    Program(const Functions& gl, const ShaderSource& vertex, const ShaderSource& fragment,
+            std::string_view label, std::span<const std::string> feedback = {});
+
+    [[nodiscard]] GLuint id() const { return handle_.id(); }
+    [[nodiscard]] const std::string& label() const { return label_; }
+    /// What the driver remarked although it compiled; often empty.
+    [[nodiscard]] const std::string& warnings() const { return warnings_; }
+
+    void use() const { handle_.gl().UseProgram(id()); }
+
+    struct Uniform {
+        std::string name;  ///< arrays without "[0]"
+        GLint location = -1;
+        GLenum type = GL_FLOAT;
+        GLint size = 1;   ///< elements of an array
+        GLuint unit = 0;  ///< samplers only
+    };
+    /// Active uniforms outside blocks, sorted by name.
+    [[nodiscard]] std::span<const Uniform> uniforms() const { return uniforms_; }
+    [[nodiscard]] bool has_uniform(std::string_view name) const { return find(name) != nullptr; }
+
+    void set(std::string_view name, bool value) const { set(name, static_cast<int>(value)); }
+    void set(std::string_view name, int value) const { set(name, std::span(&value, 1)); }
+    void set(std::string_view name, unsigned value) const { set(name, std::span(&value, 1)); }
+    void set(std::string_view name, float value) const { set(name, std::span(&value, 1)); }
+    void set(std::string_view name, const glm::vec2& value) const { set(name, std::span(&value, 1)); }
+    void set(std::string_view name, const glm::vec3& value) const { set(name, std::span(&value, 1)); }
+    void set(std::string_view name, const glm::vec4& value) const { set(name, std::span(&value, 1)); }
+    void set(std::string_view name, const glm::ivec2& value) const { set(name, std::span(&value, 1)); }
+    void set(std::string_view name, const glm::ivec3& value) const { set(name, std::span(&value, 1)); }
+    void set(std::string_view name, const glm::ivec4& value) const { set(name, std::span(&value, 1)); }
+    void set(std::string_view name, const glm::mat3& value) const { set(name, std::span(&value, 1)); }
+    void set(std::string_view name, const glm::mat4& value) const { set(name, std::span(&value, 1)); }
+    /// Arrays, from element 0; elements beyond the shader's array are dropped.
+    void set(std::string_view name, std::span<const int> values) const;
+    void set(std::string_view name, std::span<const unsigned> values) const;
+    void set(std::string_view name, std::span<const float> values) const;
+    void set(std::string_view name, std::span<const glm::vec2> values) const;
+    void set(std::string_view name, std::span<const glm::vec3> values) const;
+    void set(std::string_view name, std::span<const glm::vec4> values) const;
+    void set(std::string_view name, std::span<const glm::ivec2> values) const;
+    void set(std::string_view name, std::span<const glm::ivec3> values) const;
+    void set(std::string_view name, std::span<const glm::ivec4> values) const;
+    void set(std::string_view name, std::span<const glm::mat3> values) const;
+    void set(std::string_view name, std::span<const glm::mat4> values) const;
+    /// For double precision, convert first: what is lost must be visible.
+    void set(std::string_view name, double value) const = delete;
+
+    /// Binds texture and sampler to the unit of the sampler uniform `name`; ignored where no shader uses it.
+    void bind(std::string_view name, const Texture& texture, const Sampler& sampler) const;
+    /// Takes away whatever is bound to this program's units, so that an input that a pass leaves out reads as
+    /// black and never as what an earlier pass left there.
+    void unbind_textures() const;
+    /// Connects a uniform block to an indexed binding < uniform_blocks; ignored where no shader uses it.
+    void connect_block(std::string_view name, GLuint binding) const;
+
+  private:
+    void reflect();
+    void assign_units();
+    [[nodiscard]] const Uniform* find(std::string_view name) const;
+    template <class T>
+    void set_array(std::string_view name, std::span<const T> values) const;
+
+    ProgramHandle handle_;
+    std::string label_;
+    std::string warnings_;
+    std::vector<Uniform> uniforms_;
+};
+
+}  // namespace viscera::gl

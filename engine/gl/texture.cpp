@@ -1,0 +1,139 @@
+#include "engine/gl/texture.h"
+
+#include <algorithm>
+#include <string>
+
+#include "engine/core/error.h"
+#include "engine/gl/debug.h"
+
+namespace viscera::gl {
+namespace {
+
+std::string to_text(const Extent& extent) {
+    std::string text = std::to_string(extent.width) + " x " + std::to_string(extent.height);
+    return extent.depth == 1 ? text : text + " x " + std::to_string(extent.depth);
+}
+
+std::size_t texel_count(const Extent& extent) {
+    return static_cast<std::size_t>(extent.width) * static_cast<std::size_t>(extent.height) *
+           static_cast<std::size_t>(extent.depth);
+}
+
+void check_extent(const Functions& gl, GLenum target, const Extent& extent, std::string_view label) {
+    GLint limit = 0;
+    gl.GetIntegerv(target == GL_TEXTURE_3D ? GL_MAX_3D_TEXTURE_SIZE : GL_MAX_TEXTURE_SIZE, &limit);
+    const auto [smallest, largest] = std::minmax({extent.width, extent.height, extent.depth});
+    if (smallest < 1 || largest > limit) {
+        throw Error(ErrorCode::limit, std::string(label),
+                    "a texture of " + to_text(extent) + " texels cannot be had: each side must be 1 to " +
+                        std::to_string(limit) + " on this device");
+    }
+}
+
+}  // namespace
+
+Texture Texture::make(const Functions& gl, GLenum target, Extent extent, TextureFormat format,
+                      std::string_view label) {
+    check_extent(gl, target, extent, label);
+    GLuint id = 0;
+    gl.GenTextures(1, &id);
+    Texture texture(TextureHandle::own(gl, id), target, extent, format);
+    texture.bind_for_editing();
+    label_object(gl, GL_TEXTURE, id, label);
+    // Without these the object would count as incomplete for lack of mipmaps.
+    gl.TexParameteri(target, GL_TEXTURE_BASE_LEVEL, 0);
+    gl.TexParameteri(target, GL_TEXTURE_MAX_LEVEL, 0);
+    gl.BindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+    drain_errors(gl);
+    const auto internal = static_cast<GLint>(format.internal);
+    if (target == GL_TEXTURE_3D) {
+        gl.TexImage3D(target, 0, internal, extent.width, extent.height, extent.depth, 0, format.external,
+                      format.type, nullptr);
+    } else {
+        gl.TexImage2D(target, 0, internal, extent.width, extent.height, 0, format.external, format.type,
+                      nullptr);
+    }
+    if (const GLenum error = drain_errors(gl); error != GL_NO_ERROR) {
+        throw Error(ErrorCode::limit, std::string(label),
+                    "a texture of " + to_text(extent) + " texels (" + std::to_string(texture.bytes()) +
+                        " bytes) cannot be had: " + error_name(error));
+    }
+    return texture;
+}
+
+Texture Texture::make_2d(const Functions& gl, int width, int height, TextureFormat format,
+                         std::string_view label) {
+    return make(gl, GL_TEXTURE_2D, {width, height, 1}, format, label);
+}
+
+Texture Texture::make_3d(const Functions& gl, Extent extent, TextureFormat format, std::string_view label) {
+    return make(gl, GL_TEXTURE_3D, extent, format, label);
+}
+
+Texture Texture::from_image(const Functions& gl, const Image& image, std::string_view label) {
+    Texture texture = make_2d(gl, image.width, image.height, image.format, label);
+    texture.upload(image);
+    return texture;
+}
+
+Texture Texture::wrap(const Functions& gl, GLuint id, GLenum target, Extent extent, TextureFormat format) {
+    return {TextureHandle::wrap(gl, id), target, extent, format};
+}
+
+std::size_t Texture::bytes() const {
+    return texel_count(extent_) * format_.bytes_per_pixel;
+}
+
+void Texture::upload(std::span<const std::byte> texels) {
+    upload_region({0, 0, 0}, extent_, texels);
+}
+
+void Texture::upload_region(Extent offset, Extent size, std::span<const std::byte> texels) {
+    const auto inside = [](int begin, int length, int whole) {
+        return begin >= 0 && length >= 1 && begin <= whole - length;
+    };
+    if (!inside(offset.width, size.width, extent_.width) ||
+        !inside(offset.height, size.height, extent_.height) ||
+        !inside(offset.depth, size.depth, extent_.depth)) {
+        throw Error(ErrorCode::usage, "texture upload",
+                    "a region of " + to_text(size) + " texels lies outside a texture of " + to_text(extent_));
+    }
+    if (texels.size() != texel_count(size) * format_.bytes_per_pixel) {
+        throw Error(ErrorCode::usage, "texture upload",
+                    to_text(size) + " texels take " +
+                        std::to_string(texel_count(size) * format_.bytes_per_pixel) + " bytes, not " +
+                        std::to_string(texels.size()));
+    }
+    const Functions& api = gl();
+    set_tight_unpacking(api);
+    bind_for_editing();
+    if (target_ == GL_TEXTURE_3D) {
+        api.TexSubImage3D(target_, 0, offset.width, offset.height, offset.depth, size.width, size.height,
+                          size.depth, format_.external, format_.type, texels.data());
+    } else {
+        api.TexSubImage2D(target_, 0, offset.width, offset.height, size.width, size.height, format_.external,
+                          format_.type, texels.data());
+    }
+}
+
+void Texture::upload(const Image& image) {
+    if (Extent{image.width, image.height, 1} != extent_ || texture_format(image.format) != format_) {
+        throw Error(ErrorCode::usage, "texture upload",
+                    "a picture of " + std::to_string(image.width) + " x " + std::to_string(image.height) +
+                        " (" + std::string(info(image.format).name) + ") does not fit a texture of " +
+                        to_text(extent_) + " texels and " + std::to_string(format_.bytes_per_pixel) +
+                        " bytes each");
+    }
+    upload(std::span<const std::byte>(image.data));
+}
+
+void Texture::bind(GLuint unit) const {
+    gl().ActiveTexture(GL_TEXTURE0 + unit);
+    gl().BindTexture(target_, id());
+}
+
+void Texture::bind_for_editing() const {
+    bind(editing_unit);
+}
+
+}  // namespace viscera::gl
