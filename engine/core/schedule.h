@@ -15,7 +15,7 @@ struct PassWork {
     bool region = false;    ///< draws only a part of its targets, or with fewer features
     bool cacheable = true;  ///< the same key and the same inputs give the same picture
     std::uint64_t key = 0;  ///< hash of all that the picture depends on besides the inputs; 0: not cacheable
-    std::string_view reason;  ///< in the effect's words; must outlive the frame
+    std::string_view reason{};  ///< in the effect's words; must outlive the frame
 };
 
 enum class PassStatus { culled, idle, cached, reduced, run };
