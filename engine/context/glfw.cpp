@@ -107,13 +107,13 @@ class GlfwWindow final : public WindowContext {
             make_current();
             info_ = read_context_info(Backend::glfw, proc_address());
         } catch (...) {
-            api_.destroy_window(window_);
+            destroy();
             throw;
         }
         api_.swap_interval(1);
         listen();
     }
-    ~GlfwWindow() override { api_.destroy_window(window_); }
+    ~GlfwWindow() override { destroy(); }
 
     void make_current() override {
         CurrentSlot::release();
@@ -121,9 +121,10 @@ class GlfwWindow final : public WindowContext {
         if (api_.get_current_context() != window_) {
             throw Error(ErrorCode::context, where, "cannot be made current: " + api_.last_error());
         }
+        slot_ = CurrentSlot::capture();
     }
     void release() override {
-        if (api_.get_current_context() == window_) {
+        if (CurrentSlot::capture() == slot_) {
             api_.make_context_current(nullptr);
         }
     }
@@ -152,6 +153,17 @@ class GlfwWindow final : public WindowContext {
   private:
     void listen();
 
+    /// GLFW releases a window that it still believes current before it destroys it, which GLX takes for an
+    /// error, and ends the process, while another library's context is current. So that one steps aside.
+    void destroy() noexcept {
+        const CurrentSlot current = CurrentSlot::capture();
+        CurrentSlot::release();
+        api_.destroy_window(window_);
+        if (current != slot_) {
+            current.bind();
+        }
+    }
+
     /// From GLFW's screen units, origin at the upper left.
     [[nodiscard]] CursorPosition to_pixels(double x, double y) const {
         int width = 0;
@@ -166,6 +178,7 @@ class GlfwWindow final : public WindowContext {
 
     GlfwApi api_;
     GLFWwindow* window_ = nullptr;
+    CurrentSlot slot_;  ///< what is current when this window is
 };
 
 void GlfwWindow::listen() {
