@@ -22,7 +22,7 @@ struct BolusParams {
     double rise_s = 0.3;
     double amplitude = 1.0;
     double washout_s = 0.6;  ///< time constant of the exponential decay
-    std::vector<BolusPoint> table;
+    std::vector<BolusPoint> table{};
 
     void visit(ParamVisitor& v);
 };

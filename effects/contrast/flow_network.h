@@ -23,8 +23,8 @@ struct FlowTerminal {
 /// How blood is driven through a centreline.
 struct FlowParams {
     double viscosity_pa_s = 0.0035;
-    std::vector<FlowTerminal> inlets;   ///< empty: the widest vessel end, at inlet_pressure_mmhg
-    std::vector<FlowTerminal> outlets;  ///< empty: every vessel end that is no inlet, at outlet_pressure_mmhg
+    std::vector<FlowTerminal> inlets{};  ///< empty: the widest vessel end, at inlet_pressure_mmhg
+    std::vector<FlowTerminal> outlets{}; ///< empty: every vessel end that is no inlet, at outlet_pressure_mmhg
     double inlet_pressure_mmhg = 100.0;
     double outlet_pressure_mmhg = 20.0;
     /// Mean speed at the injection. Pressures are rarely known, and only their ratios shape the picture: the

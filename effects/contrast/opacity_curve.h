@@ -36,7 +36,7 @@ struct OpacityLine {
 ///
 ///     float s = max(2.0 * a, 4.0833335 * a - 0.083333336);
 ///     s = max(s, max(6.2572465 * a - 0.25724638, 8.529974 * a - 0.52997363));
-///     s = min(1.0, max(s, 10.910926 * a - 0.9109260));
+///     s = min(1.0, max(s, 10.910926 * a - 0.91092604));
 inline constexpr int opacity_terms = 25;
 inline constexpr std::size_t opacity_line_count = 5;
 struct OpacityLineFloat {

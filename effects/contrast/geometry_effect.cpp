@@ -1,0 +1,348 @@
+#include "effects/contrast/geometry_effect.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "effects/contrast/density.h"
+#include "engine/core/error.h"
+#include "engine/core/hash.h"
+#include "engine/gl/mesh.h"
+#include "engine/gl/texture.h"
+#include "engine/runtime/pass.h"
+
+namespace viscera::contrast {
+namespace {
+
+constexpr std::array<std::string_view, 3> method_names{"max", "depth", "painter"};
+
+}  // namespace
+
+std::span<const std::string_view> choice_names(OverlapMethod) {
+    return method_names;
+}
+
+void CloudParams::visit(ParamVisitor& v) {
+    v.field({.name = "radius_mm",
+             .doc = "Contrast is densest up to two thirds of this distance from the injection and none "
+                    "beyond it; 0: no cloud.",
+             .unit = "mm",
+             .min = 0.0},
+            radius_mm);
+    v.field({.name = "brightness",
+             .doc = "Density of the cloud at the injection while the injection lasts.",
+             .min = 0.0,
+             .max = 1.0},
+            brightness);
+    v.field({.name = "threshold", .doc = "Less of the cloud than this is dropped.", .min = 0.0, .max = 1.0},
+            threshold);
+}
+
+void GeometryParams::visit(ParamVisitor& v) {
+    v.field({.name = "vessel", .doc = "The vessels and how contrast gets into them.", .required = true},
+            vessel);
+    v.field({.name = "bolus", .doc = "What is injected, over time."}, bolus);
+    v.field({.name = "cloud", .doc = "The cloud around the injection."}, cloud);
+    v.field({.name = "tone", .doc = "Scale of the vessels' density in the picture.", .min = 0.0, .max = 1.0},
+            tone);
+    v.field({.name = "delay_s",
+             .doc = "Draws the vessels as they were this much earlier: for a capillary blush.",
+             .unit = "s",
+             .min = 0.0},
+            delay_s);
+    v.field({.name = "method",
+             .doc = "How the densest fragment is found; depth and painter only in the pass that draws "
+                    "contrast.main alone."},
+            method);
+}
+
+/// The vessel on the GPU, shared by all passes that draw it.
+struct GeometryEffect::GpuVessel {
+    explicit GpuVessel(const gl::Functions& gl, const Vessel& vessel) : mesh(gl, vessel.mesh) {
+        mesh.update_scalars("scalar", vessel.scalar);
+        mesh.select_scalar("scalar");
+    }
+    gl::Mesh mesh;
+    std::uint64_t host_version = 0;
+    std::optional<gl::Texture> bolus_table;
+    std::uint64_t bolus_key = 0;
+};
+
+GeometryEffect::GeometryEffect(Outputs outputs) : outputs_(outputs) {
+    list_variants();
+}
+
+void GeometryEffect::list_variants() {
+    using enum Scalar;
+    const bool alone = outputs_.main && !outputs_.cloud && !outputs_.distance;
+    for (const Scalar scalar : {none, density, arrival, arrival_table}) {
+        for (int bits = 0; bits < 8; ++bits) {
+            const Variant variant{scalar, (bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0};
+            const bool draws = scalar != none || variant.cloud || variant.distance;
+            const bool made_here = (scalar == none || outputs_.main) && (!variant.cloud || outputs_.cloud) &&
+                                   (!variant.distance || outputs_.distance);
+            if (!draws || !made_here || (variant.depth && !alone)) {
+                continue;
+            }
+            int location = 0;
+            ProgramDesc program{"contrast/geometry.vert", "contrast/geometry.frag", {}};
+            const auto define = [&](const char* name) { program.defines.emplace_back(name); };
+            const auto output = [&](bool made, bool in_variant, const char* name) {
+                if (in_variant) {
+                    program.defines.push_back(std::string(name) + " " + std::to_string(location));
+                }
+                location += made ? 1 : 0;
+            };
+            output(outputs_.main, scalar != none, "MAIN");
+            output(outputs_.cloud, variant.cloud, "CLOUD");
+            output(outputs_.distance, variant.distance, "DISTANCE");
+            if (variant.cloud || variant.distance) {
+                define("INJECTION");
+            }
+            if (scalar == arrival || scalar == arrival_table) {
+                define("ARRIVAL");
+            }
+            if (scalar == arrival_table) {
+                define("BOLUS_TABLE");
+            }
+            if (variant.depth) {
+                define("DEPTH");
+            }
+            variants_.push_back(variant);
+            programs_.push_back(std::move(program));
+        }
+    }
+}
+
+void GeometryEffect::visit(ParamVisitor& visitor) {
+    params_.visit(visitor);
+}
+
+void GeometryEffect::validate() const {
+    const VesselParams& vessel = params_.vessel;
+    if (vessel.density == DensitySource::arrival_time && vessel.centreline.empty() && !vessel.injection_mm) {
+        throw Error(ErrorCode::scene, "/vessel/injection_mm",
+                    "is needed: without a centreline, contrast spreads over the surface from there");
+    }
+    if (params_.method != OverlapMethod::max && (outputs_.cloud || outputs_.distance)) {
+        throw Error(
+            ErrorCode::scene, "/method",
+            "depth and painter keep one fragment for all outputs; draw contrast.main in a pass of its own");
+    }
+    if (vessel.density == DensitySource::per_vertex && params_.delay_s > 0.0) {
+        throw Error(ErrorCode::scene, "/delay_s", "densities given per vertex have no earlier time");
+    }
+}
+
+std::vector<Port> GeometryEffect::ports() const {
+    std::vector<Port> ports;
+    if (outputs_.main) {
+        ports.push_back(
+            {.name = "main",
+             .access = Access::write,
+             .target = "contrast.main",
+             .doc = "Opacity of the densest contrast on the way to the pixel, times its density."});
+    }
+    if (outputs_.cloud) {
+        ports.push_back({.name = "cloud",
+                         .access = Access::write,
+                         .target = "contrast.cloud",
+                         .doc = "Brightness and weight of the cloud around the injection.",
+                         .format = PixelFormat::rg16f});
+    }
+    if (outputs_.distance) {
+        ports.push_back({.name = "distance",
+                         .access = Access::write,
+                         .target = "contrast.distance",
+                         .doc = "Closeness to the injection in [0, 1] on vessels, -1 beside them.",
+                         .clear = {-1.0F, 0.0F, 0.0F, 0.0F}});
+    }
+    if (outputs_.main && params_.method == OverlapMethod::depth) {
+        ports.push_back({.name = "depth",
+                         .access = Access::write,
+                         .target = "contrast.depth",
+                         .doc = "Density of the fragment kept.",
+                         .format = PixelFormat::depth32f});
+    }
+    return ports;
+}
+
+std::uint32_t GeometryEffect::port_bit(std::string_view port) const {
+    const std::vector<Port> all = ports();
+    const auto found = std::ranges::find(all, port, &Port::name);
+    return found == all.end() ? 0U : 1U << (found - all.begin());
+}
+
+/// Takes the host's densities when there are any. False when the vessel holds no density at all.
+bool GeometryEffect::update_density(Prepare& prepare) {
+    const HostValues* values = prepare.frame().values;
+    const HostValues::Entry* given = values == nullptr ? nullptr : values->find(params_.vessel.scalar);
+    if (given == nullptr) {
+        if (host_version_ != 0 || host_density_.empty()) {
+            host_version_ = 0;
+            host_density_ = vessel_->scalar;
+            densest_ = host_density_.empty() ? 0.0F : *std::ranges::max_element(host_density_);
+        }
+    } else if (given->values.size() != vessel_->scalar.size()) {
+        prepare.log().fault("contrast.host_density_count",
+                            "host values '" + params_.vessel.scalar + "' have " +
+                                std::to_string(given->values.size()) + " entries, the vessel has " +
+                                std::to_string(vessel_->scalar.size()) + " vertices; they are not used");
+    } else if (given->version != host_version_) {
+        host_density_.assign(given->values.begin(), given->values.end());
+        sanitise_density(host_density_, prepare.log());
+        host_version_ = given->version;
+        densest_ = *std::ranges::max_element(host_density_);
+    }
+    return densest_ > 0.0F;
+}
+
+bool GeometryEffect::makes_density(double since_start_s) const {
+    if (vessel_->first_arrival_s > vessel_->last_arrival_s) {
+        return false;
+    }
+    return !bolus_->zero_on(since_start_s - static_cast<double>(vessel_->last_arrival_s),
+                            since_start_s - static_cast<double>(vessel_->first_arrival_s));
+}
+
+Work GeometryEffect::prepare(Prepare& prepare) {
+    if (parameters_key_ != prepare.parameters_key()) {
+        parameters_key_ = prepare.parameters_key();
+        bolus_.emplace(params_.bolus, prepare.log());
+        vessel_.reset();
+        host_density_.clear();
+    }
+    const bool arrival = params_.vessel.density == DensitySource::arrival_time;
+    since_start_s_ = prepare.frame().time_s - params_.delay_s - bolus_->start_s();
+    brightness_ = params_.cloud.brightness * bolus_->density(since_start_s_);
+    const bool injecting =
+        brightness_ > 0.0 && brightness_ >= params_.cloud.threshold && params_.cloud.radius_mm > 0.0;
+    if (params_.cloud.radius_mm == 0.0 && (outputs_.cloud || outputs_.distance)) {
+        prepare.log().fault("contrast.cloud_radius", "the cloud's radius_mm is 0; no cloud is drawn");
+    }
+    // A bolus that has not begun needs no vessel: nothing is read.
+    if (arrival && !injecting && bolus_->zero_on(-1e9, since_start_s_)) {
+        return Work::idle("no contrast yet: the injection has not begun");
+    }
+    if (!vessel_) {
+        vessel_ = load_vessel(prepare.assets(), params_.vessel);
+    }
+    if (vessel_->mesh.indices.empty()) {
+        return Work::idle("the vessel has no triangles");
+    }
+    const bool dense = arrival ? makes_density(since_start_s_) : update_density(prepare);
+    variant_ = {.scalar = Scalar::none,
+                .cloud = outputs_.cloud && injecting && prepare.has("cloud"),
+                .distance = outputs_.distance && injecting && prepare.has("distance"),
+                .depth = params_.method == OverlapMethod::depth};
+    if (outputs_.main && dense && prepare.has("main")) {
+        variant_.scalar = !arrival                          ? Scalar::density
+                          : bolus_->table().samples.empty() ? Scalar::arrival
+                                                            : Scalar::arrival_table;
+    }
+    if (variant_.scalar == Scalar::none && !variant_.cloud && !variant_.distance) {
+        return Work::idle(outputs_.main ? "no contrast in the vessels at this time"
+                                        : "no injection at this time");
+    }
+    std::uint32_t empty = 0;
+    empty |= variant_.scalar == Scalar::none ? port_bit("main") | port_bit("depth") : 0U;
+    empty |= variant_.cloud ? 0U : port_bit("cloud");
+    empty |= variant_.distance ? 0U : port_bit("distance");
+
+    const glm::dmat4 view_projection = prepare.frame().eye().view_projection();
+    Hash key;
+    key.add(parameters_key_).add(view_projection).add(brightness_).add(empty);
+    if (!arrival) {
+        key.add(host_version_);
+    } else {
+        // Where the density is the same all over the vessel, time does not matter: the plateau is one
+        // picture.
+        const DensityRange range =
+            bolus_->range(since_start_s_ - static_cast<double>(vessel_->last_arrival_s),
+                          since_start_s_ - static_cast<double>(vessel_->first_arrival_s));
+        const bool constant = range.lower == range.upper && vessel_->last_arrival_s < unreached_s;
+        key.add(constant ? range.lower : since_start_s_);
+    }
+    const std::string_view any = outputs_.main ? "main" : outputs_.cloud ? "cloud" : "distance";
+    const glm::ivec2 size = prepare.size(any);
+    const PixelRect region = project_bounds(vessel_->bounds, view_projection, size);
+    if (region.empty()) {
+        return Work::idle("the vessel lies outside the view");
+    }
+    const bool part = region != PixelRect{0, 0, size.x, size.y};
+    Work work = part ? Work::in_region(region, "only where the vessel can be seen", key.value())
+                     : Work::all(key.value());
+    work.empty_outputs = empty;
+    return work;
+}
+
+void GeometryEffect::sort_triangles(GpuVessel& gpu) {
+    std::span<const float> densities = host_density_;
+    if (params_.vessel.density == DensitySource::arrival_time) {
+        vertex_density_.resize(vessel_->scalar.size());
+        std::ranges::transform(vessel_->scalar, vertex_density_.begin(), [this](float tau) {
+            return static_cast<float>(bolus_->density(since_start_s_ - static_cast<double>(tau)));
+        });
+        densities = vertex_density_;
+    }
+    painter_order(vessel_->mesh.indices, densities, PainterKey::max, scratch_, sorted_);
+    gpu.mesh.update_indices(sorted_);
+}
+
+void GeometryEffect::draw(const Pass& pass) {
+    // The painter reorders the triangles of its own copy only.
+    const std::uint64_t key =
+        Hash().add(vessel_.get()).add(params_.method == OverlapMethod::painter ? this : nullptr).value();
+    GpuVessel& gpu = *pass.assets().shared<GpuVessel>(
+        key, [&] { return std::make_shared<GpuVessel>(pass.gl(), *vessel_); });
+    if (variant_.scalar == Scalar::density && gpu.host_version != host_version_) {
+        gpu.mesh.update_scalars("scalar", host_density_);
+        gpu.mesh.select_scalar("scalar");
+        gpu.host_version = host_version_;
+    }
+    const auto index = static_cast<std::size_t>(std::ranges::find(variants_, variant_) - variants_.begin());
+    const gl::Program& program = pass.use(index);
+    program.set("u_view_projection", glm::mat4(pass.frame().eye().view_projection()));
+    program.set("u_tone", static_cast<float>(params_.tone));
+    program.set("u_time_since_start", static_cast<float>(since_start_s_));
+    program.set("u_injection_point", glm::vec3(vessel_->injection_mm));
+    program.set("u_inv_radius",
+                params_.cloud.radius_mm > 0.0 ? static_cast<float>(1.0 / params_.cloud.radius_mm) : 0.0F);
+    program.set("u_brightness", static_cast<float>(brightness_));
+    program.set("u_threshold", static_cast<float>(params_.cloud.threshold));
+    if (variant_.scalar == Scalar::arrival_table) {
+        const BolusTable& table = bolus_->table();
+        if (!gpu.bolus_table || gpu.bolus_key != parameters_key_) {
+            gpu.bolus_table.emplace(gl::Texture::make_2d(pass.gl(), static_cast<int>(table.samples.size()), 1,
+                                                         PixelFormat::r32f, "bolus table"));
+            gpu.bolus_table->upload(std::as_bytes(std::span(table.samples)));
+            gpu.bolus_key = parameters_key_;
+        }
+        pass.bind(program, "u_bolus_table", *gpu.bolus_table, gl::Filter::nearest);
+        program.set("u_bolus_first", static_cast<float>(table.first_s));
+        program.set("u_bolus_inv_step", static_cast<float>(1.0 / table.step_s));
+    } else if (variant_.scalar == Scalar::arrival) {
+        const Bolus::Uniforms& bolus = bolus_->uniforms();
+        program.set("u_bolus_amplitude", bolus.amplitude);
+        program.set("u_bolus_inv_rise", bolus.inv_rise);
+        program.set("u_bolus_duration", bolus.duration);
+        program.set("u_bolus_inv_washout", bolus.inv_washout);
+        program.set("u_bolus_tail_scale", bolus.tail_scale);
+        program.set("u_bolus_tail_offset", bolus.tail_offset);
+    }
+    switch (params_.method) {
+        case OverlapMethod::max:
+            pass.raster(gl::max_blend_state);
+            break;
+        case OverlapMethod::depth:
+            pass.raster({.depth_test = GL_GREATER, .depth_write = true});
+            break;
+        case OverlapMethod::painter:
+            sort_triangles(gpu);
+            pass.raster(gl::overwrite_state);
+            break;
+    }
+    gpu.mesh.draw();
+}
+
+}  // namespace viscera::contrast

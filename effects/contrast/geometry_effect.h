@@ -1,0 +1,99 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "effects/contrast/bolus.h"
+#include "effects/contrast/painter_order.h"
+#include "effects/contrast/vessel.h"
+#include "engine/runtime/effect.h"
+
+namespace viscera::contrast {
+
+/// How the densest of the fragments that cover a pixel is found.
+enum class OverlapMethod {
+    max,      ///< maximum blending: in any order, with early tests
+    depth,    ///< the fragment writes its density as depth, GL_GREATER keeps the densest
+    painter,  ///< triangles sorted from dim to bright; exact where density is constant over each triangle
+};
+[[nodiscard]] std::span<const std::string_view> choice_names(OverlapMethod method);
+
+/// The denser the contrast at the injection, the nearer to it: a cloud around the point.
+struct CloudParams {
+    double radius_mm = 8.0;
+    double brightness = 1.0;
+    double threshold = 0.02;
+
+    void visit(ParamVisitor& v);
+};
+
+struct GeometryParams {
+    VesselParams vessel;
+    BolusParams bolus;
+    CloudParams cloud;
+    double tone = 1.0;
+    double delay_s = 0.0;
+    OverlapMethod method = OverlapMethod::max;
+
+    void visit(ParamVisitor& v);
+};
+
+/// Draws the vessel surface into any of contrast.main, contrast.cloud and contrast.distance in one pass.
+class GeometryEffect final : public Effect {
+  public:
+    /// Which of the three the effect makes.
+    struct Outputs {
+        bool main = true;
+        bool cloud = true;
+        bool distance = true;
+    };
+
+    explicit GeometryEffect(Outputs outputs);
+
+    void visit(ParamVisitor& visitor) override;
+    void validate() const override;
+    [[nodiscard]] std::vector<Port> ports() const override;
+    [[nodiscard]] std::span<const ProgramDesc> programs() const override { return programs_; }
+    [[nodiscard]] Work prepare(Prepare& prepare) override;
+    void draw(const Pass& pass) override;
+
+  private:
+    struct GpuVessel;
+    enum class Scalar { none, density, arrival, arrival_table };
+    struct Variant {
+        Scalar scalar = Scalar::none;
+        bool cloud = false;
+        bool distance = false;
+        bool depth = false;
+        bool operator==(const Variant&) const = default;
+    };
+
+    void list_variants();
+    [[nodiscard]] std::uint32_t port_bit(std::string_view port) const;
+    bool update_density(Prepare& prepare);
+    [[nodiscard]] bool makes_density(double since_start_s) const;
+    void sort_triangles(GpuVessel& gpu);
+
+    Outputs outputs_;
+    GeometryParams params_;
+    std::vector<Variant> variants_;
+    std::vector<ProgramDesc> programs_;
+
+    std::uint64_t parameters_key_ = 0;
+    std::optional<Bolus> bolus_;
+    std::shared_ptr<const Vessel> vessel_;
+    std::vector<float> host_density_;
+    std::uint64_t host_version_ = 0;
+    float densest_ = 0.0F;  ///< per_vertex: the largest density
+
+    // of the frame in preparation
+    Variant variant_;
+    double since_start_s_ = 0.0;
+    double brightness_ = 0.0;
+
+    PainterScratch scratch_;
+    std::vector<float> vertex_density_;
+    std::vector<std::uint32_t> sorted_;
+};
+
+}  // namespace viscera::contrast

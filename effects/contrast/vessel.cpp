@@ -1,0 +1,154 @@
+#include "effects/contrast/vessel.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include "effects/contrast/arrival_time.h"
+#include "effects/contrast/density.h"
+#include "engine/core/error.h"
+#include "engine/core/hash.h"
+#include "engine/core/params_json.h"
+#include "engine/io/mesh.h"
+
+namespace viscera::contrast {
+namespace {
+
+constexpr std::array<std::string_view, 2> source_names{"arrival_time", "per_vertex"};
+
+std::vector<float> arrival(const Vessel& vessel, const VesselParams& params, Log& log) {
+    if (!params.centreline.empty()) {
+        const CentrelineGraph graph = io::load_centreline(params.centreline.path, log);
+        const FlowNetwork network = solve_flow(graph, params.flow, params.injection_mm, log);
+        return vertex_arrival(graph, network, vessel.mesh.positions, log);
+    }
+    return geodesic_arrival(vessel.mesh.positions, vessel.mesh.indices, *params.injection_mm, params.geodesic,
+                            log);
+}
+
+std::vector<float> density(const Vessel& vessel, const VesselParams& params, Log& log) {
+    const auto found = std::ranges::find(vessel.mesh.scalars, params.scalar, &VertexScalars::name);
+    if (found == vessel.mesh.scalars.end()) {
+        return std::vector<float>(vessel.mesh.positions.size(),
+                                  0.0F);  // the host gives it, or there is none yet
+    }
+    std::vector<float> values = found->values;
+    sanitise_density(values, log);
+    return values;
+}
+
+void find_arrival_range(Vessel& vessel, const VesselParams& params) {
+    vessel.first_arrival_s = std::numeric_limits<float>::max();
+    std::size_t first = 0;
+    for (std::size_t i = 0; i < vessel.scalar.size(); ++i) {
+        const float tau = vessel.scalar[i];
+        if (tau >= unreached_s) {
+            continue;
+        }
+        if (tau < vessel.first_arrival_s) {
+            vessel.first_arrival_s = tau;
+            first = i;
+        }
+        vessel.last_arrival_s = std::max(vessel.last_arrival_s, tau);
+    }
+    if (!vessel.mesh.positions.empty()) {
+        vessel.injection_mm = params.injection_mm.value_or(glm::dvec3(vessel.mesh.positions[first]));
+    }
+}
+
+std::shared_ptr<Vessel> make_vessel(const VesselParams& params, Log& log) {
+    auto vessel = std::make_shared<Vessel>();
+    const std::vector<MeshData> meshes = io::load_meshes(
+        params.mesh.path, {.scale_mm_per_unit = params.mm_per_unit, .name_filter = params.mesh_filter}, log);
+    vessel->mesh = io::merge(meshes);
+    vessel->bounds = vessel->mesh.bounds();
+    if (vessel->mesh.indices.empty()) {
+        log.fault("contrast.no_triangles",
+                  params.mesh.path.string() + ": this vessel has no triangles; nothing is drawn of it");
+    }
+    vessel->scalar = params.density == DensitySource::arrival_time ? arrival(*vessel, params, log)
+                                                                   : density(*vessel, params, log);
+    if (params.density == DensitySource::arrival_time) {
+        find_arrival_range(*vessel, params);
+    } else {
+        vessel->injection_mm = params.injection_mm.value_or(glm::dvec3(0.0));
+    }
+    return vessel;
+}
+
+}  // namespace
+
+std::span<const std::string_view> choice_names(DensitySource) {
+    return source_names;
+}
+
+void VesselParams::visit(ParamVisitor& v) {
+    v.field(
+        {.name = "mesh", .doc = "Surface of the vessels: glTF, GLB, STL, OBJ, PLY or VTP.", .required = true},
+        mesh);
+    v.field({.name = "mesh_filter", .doc = "Only meshes whose name contains this; empty: all."}, mesh_filter);
+    v.field({.name = "mm_per_unit",
+             .doc = "Length of the file's unit; by default 1000 for glTF, 1 for the others.",
+             .unit = "mm",
+             .min = 0.0,
+             .min_excluded = true},
+            mm_per_unit);
+    v.field(
+        {.name = "density",
+         .doc =
+             "arrival_time: the bolus runs through the vessels; per_vertex: the mesh or the host gives it."},
+        density);
+    v.field({.name = "scalar",
+             .doc = "per_vertex: name of the mesh's scalar (glTF attribute _NAME) or of the host's array."},
+            scalar);
+    v.field({.name = "centreline",
+             .doc = "Centreline with radii (VTP or JSON); without one, contrast spreads over the surface."},
+            centreline);
+    v.field({.name = "injection_mm",
+             .doc = "Where contrast enters, in the mesh's frame; needed without a centreline.",
+             .unit = "mm"},
+            injection_mm);
+    v.field({.name = "flow", .doc = "Blood flow through the centreline."}, flow);
+    v.field({.name = "geodesic", .doc = "Spread over the surface, where there is no centreline."}, geodesic);
+}
+
+std::shared_ptr<const Vessel> load_vessel(Assets& assets, const VesselParams& params) {
+    VesselParams copy = params;
+    const std::string text = write_params([&](ParamVisitor& v) { copy.visit(v); }).dump();
+    return assets.shared<Vessel>(Hash().add(std::string_view(text)).value(),
+                                 [&] { return make_vessel(params, assets.log()); });
+}
+
+PixelRect project_bounds(const Bounds& bounds, const glm::dmat4& view_projection, glm::ivec2 size) {
+    const PixelRect all{0, 0, size.x, size.y};
+    if (bounds.empty()) {
+        return {};
+    }
+    glm::dvec2 low(1e30);
+    glm::dvec2 high(-1e30);
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec3 p((corner & 1) != 0 ? bounds.max.x : bounds.min.x,
+                           (corner & 2) != 0 ? bounds.max.y : bounds.min.y,
+                           (corner & 4) != 0 ? bounds.max.z : bounds.min.z);
+        const glm::dvec4 clip = view_projection * glm::dvec4(p, 1.0);
+        if (!(clip.w > 0.0) || clip.z < -clip.w) {
+            return all;  // in front of the near plane: its projection says nothing
+        }
+        const glm::dvec2 ndc = glm::dvec2(clip) / clip.w;
+        low = glm::min(low, ndc);
+        high = glm::max(high, ndc);
+    }
+    if (low.x > 1.0 || low.y > 1.0 || high.x < -1.0 || high.y < -1.0) {
+        return {};
+    }
+    const glm::dvec2 pixels(size);
+    const auto left = glm::ivec2(glm::floor((glm::clamp(low, -1.0, 1.0) * 0.5 + 0.5) * pixels)) - 1;
+    const auto right = glm::ivec2(glm::ceil((glm::clamp(high, -1.0, 1.0) * 0.5 + 0.5) * pixels)) + 1;
+    const glm::ivec2 first = glm::max(left, 0);
+    const glm::ivec2 last = glm::min(right, size);
+    return {first.x, first.y, last.x - first.x, last.y - first.y};
+}
+
+}  // namespace viscera::contrast
