@@ -29,6 +29,7 @@ struct ExrPart {
     Image image;                        ///< bottom row first, as every Image
     std::vector<std::string> channels;  ///< one name per channel; empty: default_channel_names()
     std::vector<ExrAttribute> attributes;
+    std::string compression{};  ///< set by read_exr(): OpenEXR's word for how the part was packed: "zip"
 };
 
 /// Writes the parts as one EXR file: one part as an ordinary file, several as a multi-part file. Half and

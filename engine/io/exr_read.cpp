@@ -12,6 +12,7 @@
 #include <ImfStringAttribute.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <map>
 #include <stdexcept>
@@ -139,6 +140,14 @@ std::vector<ExrAttribute> read_attributes(const Imf::Header& header) {
     return attributes;
 }
 
+/// The word for a compression, in the order of OpenEXR's enumeration.
+std::string compression_name(Imf::Compression compression) {
+    constexpr std::array<const char*, 10> names{"none",  "rle", "zips", "zip",  "piz",
+                                                "pxr24", "b44", "b44a", "dwaa", "dwab"};
+    const auto index = static_cast<std::size_t>(compression);
+    return index < names.size() ? names[index] : "unknown";
+}
+
 /// A damaged header can claim any size; what the file cannot possibly hold is refused before it is allocated.
 void check_size(std::int64_t width, std::int64_t height, std::size_t channels, std::size_t file_bytes) {
     constexpr double always_allowed = 256.0 * 1024 * 1024;
@@ -165,11 +174,12 @@ void read_part(Imf::MultiPartInputFile& file, int index, std::size_t file_bytes,
 
     const std::string name = header.hasName() ? header.name() : "";
     const std::vector<ExrAttribute> attributes = read_attributes(header);
+    const std::string compression = compression_name(header.compression());
     const std::size_t first = out.size();
     for (const Group& group : groups) {
         out.push_back({name + group.suffix,
                        make_image(static_cast<int>(width), static_cast<int>(height), group.format),
-                       group.channels, attributes});
+                       group.channels, attributes, compression});
         std::ranges::replace(out.back().channels, "", "A");
     }
 
