@@ -15,17 +15,6 @@ using nlohmann::json;
 constexpr std::size_t longest_message = 300;
 constexpr std::size_t longest_quote = 80;
 
-/// Cuts a long text at a character's border.
-[[nodiscard]] std::string cut(std::string_view text, std::size_t longest) {
-    if (text.size() <= longest) {
-        return std::string(text);
-    }
-    while (longest > 0 && (static_cast<unsigned char>(text[longest]) & 0xC0U) == 0x80U) {
-        --longest;
-    }
-    return std::string(text.substr(0, longest)) + "...";
-}
-
 /// Length of the UTF-8 character at the start of `text`, 0 where there is none (Unicode 15, table 3-7).
 [[nodiscard]] std::size_t utf8_length(std::string_view text) {
     const auto byte = [&](std::size_t i) {
@@ -229,7 +218,7 @@ std::string_view kind_name(const json& value) {
         case json::value_t::string:
             return "a string";
         case json::value_t::boolean:
-            return "true or false";
+            return value.get<bool>() ? "true" : "false";
         case json::value_t::number_integer:
         case json::value_t::number_unsigned:
         case json::value_t::number_float:
@@ -239,8 +228,18 @@ std::string_view kind_name(const json& value) {
     }
 }
 
+std::string shorten(std::string_view text, std::size_t longest) {
+    if (text.size() <= longest) {
+        return std::string(text);
+    }
+    while (longest > 0 && (static_cast<unsigned char>(text[longest]) & 0xC0U) == 0x80U) {
+        --longest;
+    }
+    return std::string(text.substr(0, longest)) + "...";
+}
+
 std::string quote(std::string_view text) {
-    return json(cut(text, longest_quote)).dump(-1, ' ', false, json::error_handler_t::replace);
+    return json(shorten(text, longest_quote)).dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
 std::string number_text(double value) {

@@ -18,8 +18,10 @@ namespace viscera {
 /// The keys that a pointer passes through, unescaped. Empty optional where it is not RFC 6901.
 [[nodiscard]] std::optional<std::vector<std::string>> pointer_tokens(std::string_view pointer);
 
-/// "an object", "a list", "a string", "a number", "true or false", "null"
+/// "an object", "a list", "a string", "a number", "true", "false", "null"
 [[nodiscard]] std::string_view kind_name(const nlohmann::json& value);
+/// At most `longest` bytes of a UTF-8 text and "...", cut between characters.
+[[nodiscard]] std::string shorten(std::string_view text, std::size_t longest);
 /// In double quotes, control characters escaped, cut where it is long.
 [[nodiscard]] std::string quote(std::string_view text);
 /// Shortest decimal that reads back as the same double.
