@@ -37,8 +37,10 @@ struct GeodesicDistances {
 /// at two corners the source is unfolded into the triangle's plane, and where the straight line from it to
 /// the third corner passes between the two, its length is the third distance (Reimann's update, as in fast
 /// marching with a spherical front); else the way along an edge. A vertex whose distance drops is taken up
-/// again until nothing drops, so obtuse triangles do no harm. On a plane the result is exact; on a cylinder
-/// of 64 facets and a sphere of 10^4 triangles within 0.2 % and 1 % of the largest distance.
+/// again until nothing drops, so obtuse triangles do no harm. On a plane the result is exact; of the largest
+/// distance it errs by 0.02 % on a cylinder of 64 facets, by 1 % on a sphere of 2562 even vertices, and
+/// by 1.7 % on one of 5329 with slivers at its poles. That error lies at the antipode and halves with the
+/// edge length.
 ///
 /// With bridge_mm > 0 each vertex also reaches the vertices of other parts within that distance.
 ///
