@@ -64,4 +64,8 @@ function(viscera_add_glad target)
   set_source_files_properties(${gl_c} PROPERTIES COMPILE_OPTIONS "-w;-fvisibility=hidden")
   # Public: effects and hosts that call OpenGL do so through engine/gl/functions.h, which needs the generated header.
   target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${viscera_glad_dir}/include>)
+  if(PROJECT_IS_TOP_LEVEL)
+    install(FILES ${viscera_glad_dir}/include/engine/gl/glad/gl.h ${viscera_glad_dir}/include/engine/gl/glad/khrplatform.h
+      DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/viscera/engine/gl/glad)
+  endif()
 endfunction()
