@@ -52,6 +52,11 @@ std::string targets_of(const Plan& plan, const PlanPass& pass, bool made) {
     return text.empty() ? "-" : text;
 }
 
+std::string name_of(const PlanContent& content) {
+    const bool from_last_frame = !content.writer && !content.imported;
+    return content.target + (from_last_frame ? " (previous)" : "");
+}
+
 std::string place_of(const PlanContent& content) {
     if (content.imported) {
         return "imported " + std::to_string(*content.imported);
@@ -113,7 +118,7 @@ std::string pass_node(const PlanPass& pass, std::size_t index) {
 }
 
 std::string content_node(const PlanContent& content, std::size_t index, bool output) {
-    const std::string label = content.target + ": " + std::string(info(content.format).name) + " " +
+    const std::string label = name_of(content) + ": " + std::string(info(content.format).name) + " " +
                               size_text(content.width, content.height) + ", " + place_of(content);
     return "  c" + std::to_string(index) + " [shape=ellipse, label=" + quoted(label) +
            (output ? ", penwidth=3" : "") + "];\n";
@@ -157,7 +162,7 @@ std::string to_table(const Plan& plan) {
     }
     std::vector<Row> contents{{"target", "format", "size", "passes", "place"}};
     for (const PlanContent& content : plan.contents) {
-        contents.push_back({content.target, std::string(info(content.format).name),
+        contents.push_back({name_of(content), std::string(info(content.format).name),
                             size_text(content.width, content.height), lifetime_of(plan, content),
                             place_of(content)});
     }
