@@ -36,7 +36,8 @@ class HostState {
         std::size_t offset;
     };
     /// The rows that this context has, in the order of restore().
-    [[nodiscard]] std::span<const Entry> entries() const { return entries_; }
+    [[nodiscard]] std::span<const Entry> entries() const& { return entries_; }
+    std::span<const Entry> entries() && = delete;
     [[nodiscard]] std::span<const GLint64> values(const Entry& entry) const {
         return std::span(values_).subspan(entry.offset, entry.row->slots);
     }

@@ -17,7 +17,7 @@ GLuint64 result(const Functions& gl, const QueryHandle& query) {
 
 }  // namespace
 
-GpuTimer::GpuTimer(const Functions& gl) : gl_(&gl) {
+GpuTimer::GpuTimer(const Functions& gl, bool software) : gl_(&gl), reliable_(!software) {
     for (Slot& slot : slots_) {
         slot = {make_query(gl), make_query(gl)};
     }
@@ -39,21 +39,21 @@ void GpuTimer::end() {
     ++count_;
 }
 
-std::optional<double> GpuTimer::poll() {
-    if (count_ == 0) {
-        return std::nullopt;
+std::optional<double> GpuTimer::latest_ms() {
+    while (count_ > 0) {
+        const Slot& slot = slots_[first_];
+        GLint available = GL_FALSE;
+        gl_->GetQueryObjectiv(slot.end.id(), GL_QUERY_RESULT_AVAILABLE, &available);
+        if (available == GL_FALSE) {
+            break;
+        }
+        first_ = (first_ + 1) % ring_size;
+        --count_;
+        const GLuint64 begin = result(*gl_, slot.begin);
+        const GLuint64 end = result(*gl_, slot.end);
+        latest_ms_ = end > begin ? static_cast<double>(end - begin) * 1e-6 : 0.0;
     }
-    const Slot& slot = slots_[first_];
-    GLint available = GL_FALSE;
-    gl_->GetQueryObjectiv(slot.end.id(), GL_QUERY_RESULT_AVAILABLE, &available);
-    if (available == GL_FALSE) {
-        return std::nullopt;
-    }
-    first_ = (first_ + 1) % ring_size;
-    --count_;
-    const GLuint64 begin = result(*gl_, slot.begin);
-    const GLuint64 end = result(*gl_, slot.end);
-    return end > begin ? static_cast<double>(end - begin) * 1e-6 : 0.0;
+    return latest_ms_;
 }
 
 }  // namespace viscera::gl

@@ -12,17 +12,19 @@ namespace viscera::gl {
 /// GPU time between begin() and end(), known some frames later, without ever waiting. It uses timestamps, so
 /// that it may be nested and never collides with a GL_TIME_ELAPSED query of the host's.
 ///
-/// Software renderers report times of no meaning: believe it only where Capabilities::gpu_timers() holds.
+/// Software renderers report times of no meaning: reliable() is then false.
 class GpuTimer {
   public:
-    explicit GpuTimer(const Functions& gl);
+    /// `software`: whether the context renders on the CPU.
+    GpuTimer(const Functions& gl, bool software);
 
     /// Measures nothing when all results of the ring are still outstanding.
     void begin();
     void end();
-    /// The oldest finished measurement [ms], or none yet. Each is given once.
-    [[nodiscard]] std::optional<double> poll();
+    /// The newest measurement that has come back [ms]; none before the first.
+    [[nodiscard]] std::optional<double> latest_ms();
     [[nodiscard]] std::size_t outstanding() const { return count_; }
+    [[nodiscard]] bool reliable() const { return reliable_; }
 
     static constexpr std::size_t ring_size = 8;
 
@@ -36,6 +38,8 @@ class GpuTimer {
     std::size_t first_ = 0;  ///< oldest outstanding
     std::size_t count_ = 0;
     bool running_ = false;
+    bool reliable_ = true;
+    std::optional<double> latest_ms_;
 };
 
 /// Wall-clock time since it was made.
