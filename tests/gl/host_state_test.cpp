@@ -53,6 +53,26 @@ TEST_P(HostStateTest, EveryRowIsNamedOnce) {
     EXPECT_EQ(names.size(), gl::fixed_state_rows().size() + gl::binding_rows().size());
 }
 
+TEST_P(HostStateTest, RowsHoldWithNothingAboveCore33) {
+    gl::Functions old = gl();
+    old.VERSION_4_0 = old.VERSION_4_1 = old.VERSION_4_2 = old.VERSION_4_3 = 0;
+    old.KHR_debug = old.ARB_clip_control = 0;
+    const auto save = [&] {
+        HostState state(old);
+        state.save(log());
+        return state;
+    };
+    const HostState before = save();
+    EXPECT_LT(before.entries().size(), saved().entries().size());
+    for (const HostState::Entry& entry : before.entries()) {
+        SCOPED_TRACE(entry.row->name);
+        entry.row->poison(old, poison_.objects());
+        EXPECT_NE(values_of(save(), entry), values_of(before, entry));
+        before.restore();
+        EXPECT_EQ(differing_rows(before, save()), std::vector<std::string>{});
+    }
+}
+
 TEST_P(HostStateTest, EachPoisonChangesItsRowAndRestoreSetsItBack) {
     const HostState before = saved();
     for (const HostState::Entry& entry : before.entries()) {
