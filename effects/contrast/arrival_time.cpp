@@ -1,5 +1,6 @@
 #include "effects/contrast/arrival_time.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -38,6 +39,34 @@ std::vector<float> vertex_arrival(const CentrelineGraph& graph, const FlowNetwor
             unreached);
     }
     return arrival;
+}
+
+void smooth_arrival(std::span<float> arrival_s, std::span<const std::uint32_t> indices, int rounds) {
+    std::vector<double> sum(arrival_s.size());
+    std::vector<int> count(arrival_s.size());
+    const auto reached = [&](std::uint32_t v) { return v < arrival_s.size() && arrival_s[v] < unreached_s; };
+    for (int round = 0; round < rounds; ++round) {
+        std::ranges::fill(sum, 0.0);
+        std::ranges::fill(count, 0);
+        for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
+            for (std::size_t corner = 0; corner < 3; ++corner) {
+                const std::uint32_t a = indices[i + corner];
+                const std::uint32_t b = indices[i + (corner + 1) % 3];
+                if (reached(a) && reached(b)) {
+                    sum[a] += static_cast<double>(arrival_s[b]);
+                    sum[b] += static_cast<double>(arrival_s[a]);
+                    ++count[a];
+                    ++count[b];
+                }
+            }
+        }
+        for (std::size_t v = 0; v < arrival_s.size(); ++v) {
+            if (count[v] > 0) {
+                arrival_s[v] =
+                    static_cast<float>(0.5 * (static_cast<double>(arrival_s[v]) + sum[v] / count[v]));
+            }
+        }
+    }
 }
 
 }  // namespace viscera::contrast

@@ -46,7 +46,7 @@ double unfold(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, dou
     if (crossing < 0.0 || crossing > base) {
         return along_edges;
     }
-    return std::min(along_edges, std::hypot(cx - sx, cy + sy));
+    return std::min(along_edges, std::sqrt((cx - sx) * (cx - sx) + (cy + sy) * (cy + sy)));
 }
 
 // The mesh with vertices at one place joined: each vertex is stood for by the first at its place.
@@ -152,7 +152,7 @@ void march(const Surface& surface, const PointGrid& grid, double bridge_mm, std:
         if (bridge_mm > 0.0) {
             const glm::dvec3 from = surface.at(here.vertex);
             grid.for_each_near(from, bridge_mm, [&](std::uint32_t other) {
-                if (surface.part(other) != surface.part(here.vertex)) {
+                if (distance[other] > here.distance_mm && surface.part(other) != surface.part(here.vertex)) {
                     relax(other, here.distance_mm + glm::distance(from, surface.at(other)));
                 }
             });

@@ -16,12 +16,12 @@ class PointGrid {
   public:
     PointGrid() = default;
 
-    /// Takes the points `chosen` out of `positions_mm`, which must outlive the grid; all finite. cell_mm > 0.
+    /// Takes the points `chosen` out of `positions_mm`; all finite. cell_mm > 0.
     PointGrid(std::span<const glm::vec3> positions_mm, std::span<const std::uint32_t> chosen, double cell_mm)
-        : positions_(positions_mm), cell_mm_(cell_mm) {
+        : cell_mm_(cell_mm) {
         entries_.reserve(chosen.size());
         for (const std::uint32_t point : chosen) {
-            entries_.push_back({cell_of(glm::dvec3(positions_mm[point])), point});
+            entries_.push_back({cell_of(glm::dvec3(positions_mm[point])), positions_mm[point], point});
         }
         std::ranges::sort(entries_, {}, &Entry::cell);
     }
@@ -37,7 +37,8 @@ class PointGrid {
                 const Cell high{centre[0] + x, centre[1] + y, centre[2] + 1.0};
                 for (auto at = std::ranges::lower_bound(entries_, low, {}, &Entry::cell);
                      at != entries_.end() && at->cell <= high; ++at) {
-                    if (glm::distance(glm::dvec3(positions_[at->point]), place) <= radius_mm) {
+                    if (const glm::dvec3 apart = glm::dvec3(at->position_mm) - place;
+                        glm::dot(apart, apart) <= radius_mm * radius_mm) {
                         visit(at->point);
                     }
                 }
@@ -49,6 +50,7 @@ class PointGrid {
     using Cell = std::array<double, 3>;  // whole numbers; doubles, so that no mesh is too large
     struct Entry {
         Cell cell{};
+        glm::vec3 position_mm{0.0F};
         std::uint32_t point = 0;
     };
 
@@ -56,7 +58,6 @@ class PointGrid {
         return {std::floor(p.x / cell_mm_), std::floor(p.y / cell_mm_), std::floor(p.z / cell_mm_)};
     }
 
-    std::span<const glm::vec3> positions_;
     std::vector<Entry> entries_;
     double cell_mm_ = 1.0;
 };

@@ -1,7 +1,9 @@
 #include "effects/contrast/arrival_time.h"
 
-#include <chrono>
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <ctime>
 #include <limits>
 #include <numbers>
 #include <random>
@@ -98,6 +100,31 @@ TEST(VertexArrival, BadInputIsUnreached) {
     EXPECT_TRUE(vertex_arrival(graph, network, {}, log).empty());
 }
 
+TEST(SmoothArrival, KeepsAGradientAndEvensOutAJump) {
+    // A strip of two rows whose times grow along it, with one wild vertex and an unreached end.
+    std::vector<float> arrival;
+    std::vector<std::uint32_t> indices;
+    for (std::uint32_t i = 0; i < 20; ++i) {
+        arrival.insert(arrival.end(), {static_cast<float>(i), static_cast<float>(i)});
+        if (i > 0) {
+            const std::uint32_t v = 2 * i;
+            indices.insert(indices.end(), {v - 2, v, v - 1, v, v + 1, v - 1});
+        }
+    }
+    arrival[20] += 8.0F;
+    arrival[38] = arrival[39] = unreached_s;
+    std::vector<float> smooth = arrival;
+    smooth_arrival(smooth, indices, 0);
+    EXPECT_EQ(smooth, arrival);
+    smooth_arrival(smooth, indices, 2);
+    EXPECT_LT(smooth[20], 14.0F);
+    EXPECT_NEAR(static_cast<double>(smooth[30]), 15.0, 0.35);
+    EXPECT_EQ(smooth[38], unreached_s);
+    EXPECT_LE(*std::max_element(smooth.begin(), smooth.begin() + 38), 18.0F);
+    const std::vector<std::uint32_t> lying{0, 1, 999};
+    smooth_arrival(smooth, lying, 1);
+}
+
 TEST(TubeTree, FindsWhatATryOfEveryEdgeFinds) {
     std::mt19937 random(2);
     std::uniform_real_distribution<double> place(-50.0, 50.0);
@@ -146,13 +173,13 @@ TEST(VertexArrival, IsFastEnoughToBeDoneAtLoad) {
     }
     Log log;
     const FlowNetwork network = solve_flow(graph, {.inlets = {{0, 100}}}, {}, log);
-    const auto start = std::chrono::steady_clock::now();
+    const std::clock_t start = std::clock();  // CPU time: other processes do not count
     const std::vector<float> arrival = vertex_arrival(graph, network, points, log);
-    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-    RecordProperty("seconds", std::to_string(elapsed.count()));
-    std::printf("100,000 vertices x 1,000 edges: %.0f ms\n", 1e3 * elapsed.count());
+    const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+    RecordProperty("seconds", std::to_string(seconds));
+    std::printf("100,000 vertices x 1,000 edges: %.0f ms\n", 1e3 * seconds);
 #if defined(NDEBUG) && !defined(__SANITIZE_ADDRESS__)
-    EXPECT_LT(elapsed.count(), 0.3);
+    EXPECT_LT(seconds, 0.3);
 #endif
     EXPECT_EQ(arrival.size(), points.size());
 }
