@@ -1,0 +1,49 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "assets/generate/gray_image.h"
+
+namespace viscera::assets {
+
+/// One picture of the plume: the angle between its side view and this view, and where its base lies.
+struct SmokeView {
+    std::string_view name;
+    double angle_deg;    ///< 0: axis in the picture plane, pointing up; 90: axis along the line of sight
+    glm::dvec2 base_uv;  ///< sprite UV (origin bottom-left) of the point where the smoke leaves the vessel
+};
+
+/// The views that sprites are made for, in order of angle. Near 90 degrees the base lies under the smoke.
+inline constexpr std::array<SmokeView, 5> smoke_views{{{"smoke_side", 0.0, {0.55, 0.15}},
+                                                       {"smoke_22", 22.5, {0.55, 0.15}},
+                                                       {"smoke_45", 45.0, {0.55, 0.17}},
+                                                       {"smoke_67", 67.5, {0.545, 0.29}},
+                                                       {"smoke_front", 90.0, {0.54, 0.5}}}};
+
+/// A plume of contrast agent in still blood: one density field, of which every view is a projection, so that
+/// neighbouring views blend. Lengths are in units of the sprite's edge; the plume starts at the origin and
+/// points along +y.
+class Smoke {
+  public:
+    explicit Smoke(std::uint32_t seed);
+
+    /// Optical thickness through the field as opacity in [0, 1): 1 - exp(-integral); square, exactly 0 along
+    /// the border.
+    [[nodiscard]] GrayImage project(const SmokeView& view, int size) const;
+
+  private:
+    [[nodiscard]] float sample(const glm::dvec3& p) const;
+
+    std::vector<float> density_;
+};
+
+/// Silhouette in the side view's UV where smoke may show: free above the vessel's wall, closed below it and
+/// towards the border. softness is the width of the edge in UV, > 0; exactly 0 along the border.
+[[nodiscard]] GrayImage smoke_mask(double softness, int size);
+
+}  // namespace viscera::assets
