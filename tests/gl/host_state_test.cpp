@@ -49,8 +49,10 @@ TEST_P(HostStateTest, EveryRowIsNamedOnce) {
     for (const HostState::Entry& entry : state.entries()) {
         EXPECT_TRUE(names.insert(entry.row->name).second) << entry.row->name;
     }
-    // Mesa gives 4.5 on both backends: no row may be missing here.
-    EXPECT_EQ(names.size(), gl::fixed_state_rows().size() + gl::binding_rows().size());
+    // Mesa gives 4.5 here, so no row may be missing; some drivers give exactly the 3.3 asked for.
+    if (gl().VERSION_4_3 != 0) {
+        EXPECT_EQ(names.size(), gl::fixed_state_rows().size() + gl::binding_rows().size());
+    }
 }
 
 TEST_P(HostStateTest, RowsHoldWithNothingAboveCore33) {
@@ -64,7 +66,7 @@ TEST_P(HostStateTest, RowsHoldWithNothingAboveCore33) {
     };
     const HostState before = save();
     const HostState whole = saved();
-    EXPECT_LT(before.entries().size(), whole.entries().size());
+    EXPECT_LE(before.entries().size(), whole.entries().size());
     for (const HostState::Entry& entry : before.entries()) {
         SCOPED_TRACE(entry.row->name);
         entry.row->poison(old, poison_.objects());
@@ -175,6 +177,9 @@ TEST_P(HostStateTest, AnActiveQueryOfTheHostStaysActive) {
 }
 
 TEST_P(HostStateTest, RunningTransformFeedbackIsPausedAndResumed) {
+    if (gl().VERSION_4_0 == 0) {
+        GTEST_SKIP() << "feedback objects came with OpenGL 4.0";
+    }
     const ShaderSource vertex{
         "#version 330\nout float v; void main() { v = 1.0; gl_Position = vec4(0.0); }", {}, {}};
     const std::string varying = "v";
