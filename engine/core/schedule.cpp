@@ -45,21 +45,33 @@ std::string_view to_string(PassStatus status) {
 
 void Schedule::update(const Plan& plan, std::span<const PassWork> work, std::span<const std::uint64_t> held,
                       std::span<const std::uint64_t> imported_keys) {
-    if (work.size() != plan.passes.size() || held.size() != plan.textures.size()) {
-        throw Error(ErrorCode::usage, "schedule", "needs one work per pass and one key per texture");
+    if (work.size() != plan.passes.size()) {
+        throw Error(ErrorCode::usage, "schedule", "needs one work per pass");
     }
-    ++frame_;
-    name_contents(plan, work, held, imported_keys);
+    begin(plan, held, imported_keys);
+    for (std::size_t p = 0; p < plan.passes.size(); ++p) {
+        if (plan.passes[p].live) {
+            this->work(plan, p, work[p]);
+        }
+    }
+    decide(plan);
+}
+
+void Schedule::decide(const Plan& plan) {
     choose_passes(plan);
-    find_wanted(plan, work);
-    give_status(plan, work);
+    find_wanted(plan);
+    give_status(plan);
     settle_outputs(plan);
     settle_history(plan);
 }
 
-void Schedule::name_contents(const Plan& plan, std::span<const PassWork> work,
-                             std::span<const std::uint64_t> held,
-                             std::span<const std::uint64_t> imported_keys) {
+void Schedule::begin(const Plan& plan, std::span<const std::uint64_t> held,
+                     std::span<const std::uint64_t> imported_keys) {
+    if (held.size() != plan.textures.size()) {
+        throw Error(ErrorCode::usage, "schedule", "needs one key per texture");
+    }
+    ++frame_;
+    works_.assign(plan.passes.size(), {});
     contents_.resize(plan.contents.size());
     std::size_t imported_count = 0;
     for (const PlanContent& content : plan.contents) {
@@ -89,14 +101,10 @@ void Schedule::name_contents(const Plan& plan, std::span<const PassWork> work,
         previous.empty = key == 0 || key == nothing;
         previous.key = previous.empty ? nothing : key;
     }
-    for (std::size_t p = 0; p < plan.passes.size(); ++p) {
-        if (plan.passes[p].live) {
-            name_pass(plan, p, work[p]);
-        }
-    }
 }
 
-void Schedule::name_pass(const Plan& plan, std::size_t pass, const PassWork& work) {
+void Schedule::work(const Plan& plan, std::size_t pass, const PassWork& work) {
+    works_[pass] = work;
     const auto& bindings = plan.passes[pass].bindings;
     const bool known = work.cacheable && work.key != 0;
     Hash inputs;
@@ -119,7 +127,8 @@ void Schedule::name_pass(const Plan& plan, std::size_t pass, const PassWork& wor
         }
         const PlanContent& content = plan.contents[*bindings[b].content];
         ContentState& state = contents_[*bindings[b].content];
-        if (!work.idle) {
+        const bool left_empty = work.idle || (b < 32 && ((work.empty_bindings >> b) & 1U) != 0);
+        if (!left_empty) {
             state.key = Hash(inputs).add(b).add(empty_key(content)).value();
         } else if (const auto source = content.modifies ? content.modifies : content.passthrough) {
             state = contents_[*source];
@@ -175,7 +184,9 @@ bool Schedule::play(const Plan& plan) {
             }
         }
         for (const PlanBinding& binding : plan.passes[p].bindings) {
-            if (binding.content && makes_content(binding.access)) {
+            // What the pass leaves empty, or lets something else stand in for, it does not draw into.
+            if (binding.content && makes_content(binding.access) &&
+                contents_[*binding.content].is_drawn(*binding.content)) {
                 slots_[slot(plan, *binding.content)] = contents_[*binding.content].key;
             }
         }
@@ -197,10 +208,14 @@ void Schedule::choose_passes(const Plan& plan) {
     }
 }
 
-void Schedule::find_wanted(const Plan& plan, std::span<const PassWork> work) {
+void Schedule::find_wanted(const Plan& plan) {
     wanted_.assign(plan.passes.size(), 0);
     wanted_contents_.assign(plan.contents.size(), 0);
-    const auto want = [&](std::size_t content) { wanted_contents_[contents_[content].holder] = 1; };
+    const auto want = [&](std::size_t content) {
+        if (!contents_[content].empty) {
+            wanted_contents_[contents_[content].holder] = 1;
+        }
+    };
     for (const PlanOutput& output : plan.outputs) {
         want(output.content);
     }
@@ -211,7 +226,7 @@ void Schedule::find_wanted(const Plan& plan, std::span<const PassWork> work) {
     }
     for (std::size_t p = plan.passes.size(); p-- > 0;) {
         const auto& bindings = plan.passes[p].bindings;
-        wanted_[p] = plan.passes[p].live && !work[p].idle &&
+        wanted_[p] = plan.passes[p].live && !works_[p].idle &&
                      std::ranges::any_of(bindings, [&](const PlanBinding& binding) {
                          return binding.content && makes_content(binding.access) &&
                                 wanted_contents_[*binding.content] != 0;
@@ -232,25 +247,25 @@ void Schedule::find_wanted(const Plan& plan, std::span<const PassWork> work) {
     }
 }
 
-void Schedule::give_status(const Plan& plan, std::span<const PassWork> work) {
+void Schedule::give_status(const Plan& plan) {
     using enum PassStatus;
     const auto or_else = [](std::string_view reason, std::string_view other) {
         return reason.empty() ? other : reason;
     };
     passes_.resize(plan.passes.size());
     for (std::size_t p = 0; p < plan.passes.size(); ++p) {
-        const std::string_view said = work[p].reason;
+        const std::string_view said = works_[p].reason;
         if (!plan.passes[p].live) {
             passes_[p] = {culled, plan.passes[p].reason};
-        } else if (work[p].idle) {
+        } else if (works_[p].idle) {
             passes_[p] = {idle, or_else(said, "nothing to draw")};
         } else if (wanted_[p] == 0) {
             passes_[p] = {culled, "no pass that draws needs it in this frame"};
         } else if (runs_[p] == 0) {
             passes_[p] = {cached, "inputs, parameters and camera unchanged"};
-        } else if (work[p].region) {
+        } else if (works_[p].region) {
             passes_[p] = {reduced, or_else(said, "only the touched region")};
-        } else if (!work[p].cacheable || work[p].key == 0) {
+        } else if (!works_[p].cacheable || works_[p].key == 0) {
             passes_[p] = {run, or_else(said, "cannot be cached")};
         } else {
             passes_[p] = {run, or_else(said, "changed, or its texture served another target since")};

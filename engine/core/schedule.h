@@ -16,6 +16,8 @@ struct PassWork {
     bool cacheable = true;  ///< the same key and the same inputs give the same picture
     std::uint64_t key = 0;  ///< hash of all that the picture depends on besides the inputs; 0: not cacheable
     std::string_view reason{};  ///< in the effect's words; must outlive the frame
+    /// Bit b: into binding b of the pass nothing is drawn though the pass is not idle.
+    std::uint32_t empty_bindings = 0;
 };
 
 enum class PassStatus { culled, idle, cached, reduced, run };
@@ -34,6 +36,9 @@ struct ContentState {
     std::uint64_t key = 0;   ///< names the picture: equal keys, equal pixels; 0: culled with its pass
     std::size_t holder = 0;  ///< content whose texture holds the picture: itself, or what stands in for it
     bool empty = false;      ///< nothing but the clear value of `holder`; its texture holds no such thing
+
+    /// Whether its pass draws it when the pass runs; `self` is the content's own index.
+    [[nodiscard]] bool is_drawn(std::size_t self) const { return !empty && holder == self; }
 };
 
 /// What is left to do so that a texture holds the picture when all passes are through.
@@ -53,16 +58,17 @@ struct HistoryStep {
 
 /// Decides each frame what need not be done: the heart of 'skip what a scene doesn't need'.
 ///
-/// Every content gets a key, made from its pass's key and the keys of all that the pass reads. An idle pass
-/// makes nothing: its contents are their passthrough (or what they modify), or else empty. Going back from
+/// Every content gets a key, made from its pass's key and the keys of all that the pass reads. An idle pass,
+/// or one binding that a pass leaves empty, makes nothing: the content is its passthrough (or what it
+/// modifies), or else empty. Going back from
 /// the outputs, a content whose texture already holds its key needs nothing; any other has its writer run,
 /// which in turn demands its inputs. Since contents take turns in one texture, a pass that runs destroys what
 /// stood there: the frame is played through in order until every running pass finds each input in place.
 ///
-/// The executor then, in the order of the passes, for each that draws(): clears what it writes, and what it
-/// modifies where the content below (PlanContent::modifies) is empty; reads content c from the texture of
-/// contents()[c].holder, or is told that it is empty. At the end it does outputs(), and once nobody reads
-/// this frame any more, history().
+/// The executor then, in the order of the passes, for each that draws(): attaches each content c that
+/// contents()[c].is_drawn(c), clears what it writes, and what it modifies where the content below
+/// (PlanContent::modifies) is empty; reads content c from the texture of contents()[c].holder, or is told
+/// that it is empty. At the end it does outputs(), and once nobody reads this frame any more, history().
 ///
 /// One Schedule belongs to one set of textures. A warm update() allocates nothing.
 class Schedule {
@@ -73,6 +79,13 @@ class Schedule {
     void update(const Plan& plan, std::span<const PassWork> work, std::span<const std::uint64_t> held,
                 std::span<const std::uint64_t> imported_keys = {});
 
+    /// The same in steps, for callers whose works depend on what is empty above them: begin(), work() for
+    /// each live pass in order, after which contents() is right for all that the pass writes, and decide().
+    void begin(const Plan& plan, std::span<const std::uint64_t> held,
+               std::span<const std::uint64_t> imported_keys = {});
+    void work(const Plan& plan, std::size_t pass, const PassWork& work);
+    void decide(const Plan& plan);
+
     [[nodiscard]] std::span<const PassDecision> passes() const { return passes_; }
     [[nodiscard]] std::span<const ContentState> contents() const { return contents_; }
     [[nodiscard]] std::span<const Settlement> outputs() const { return outputs_; }
@@ -82,14 +95,11 @@ class Schedule {
     [[nodiscard]] std::span<const std::uint64_t> held_after() const { return held_after_; }
 
   private:
-    void name_contents(const Plan& plan, std::span<const PassWork> work, std::span<const std::uint64_t> held,
-                       std::span<const std::uint64_t> imported_keys);
-    void name_pass(const Plan& plan, std::size_t pass, const PassWork& work);
     void choose_passes(const Plan& plan);
     bool play(const Plan& plan);
     bool demand(const Plan& plan, std::size_t content);
-    void find_wanted(const Plan& plan, std::span<const PassWork> work);
-    void give_status(const Plan& plan, std::span<const PassWork> work);
+    void find_wanted(const Plan& plan);
+    void give_status(const Plan& plan);
     void settle_outputs(const Plan& plan);
     void settle_history(const Plan& plan);
     Settlement settle(const Plan& plan, std::size_t content, std::size_t where);
@@ -98,6 +108,7 @@ class Schedule {
     [[nodiscard]] bool history_stands(const PlanHistory& history) const;
 
     std::uint64_t frame_ = 0;  ///< makes the keys of what is not cacheable unlike any before
+    std::vector<PassWork> works_;
     std::vector<PassDecision> passes_;
     std::vector<ContentState> contents_;
     std::vector<Settlement> outputs_;

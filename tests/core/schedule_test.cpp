@@ -26,6 +26,10 @@ Picture cleared(const PlanContent& content) {
     return fold(static_cast<std::size_t>(content.clear[0] * 16.0F), static_cast<std::size_t>(content.format));
 }
 
+bool leaves_empty(const PassWork& work, std::size_t binding) {
+    return work.idle || ((work.empty_bindings >> binding) & 1U) != 0;
+}
+
 /// What the pictures of one frame are when every content has a texture of its own and nothing is skipped.
 class Oracle {
   public:
@@ -64,15 +68,16 @@ class Oracle {
                 input = fold(input, pictures[*plan.contents[*b.content].modifies]);
             }
         }
-        for (const PlanBinding& b : plan.passes[p].bindings) {
+        for (std::size_t i = 0; i < plan.passes[p].bindings.size(); ++i) {
+            const PlanBinding& b = plan.passes[p].bindings[i];
             if (!b.content || b.access == Access::read || b.access == Access::previous) {
                 continue;
             }
             const PlanContent& content = plan.contents[*b.content];
             const auto stand_in = content.modifies ? content.modifies : content.passthrough;
-            pictures[*b.content] = !work.idle ? fold(input, *b.content)
-                                   : stand_in ? pictures[*stand_in]
-                                              : cleared(content);
+            pictures[*b.content] = !leaves_empty(work, i) ? fold(input, *b.content)
+                                   : stand_in             ? pictures[*stand_in]
+                                                          : cleared(content);
         }
     }
 
@@ -149,7 +154,8 @@ class Machine {
             }
         }
         for (const PlanBinding& b : plan.passes[p].bindings) {
-            if (b.content && (b.access == Access::write || b.access == Access::modify)) {
+            if (b.content && (b.access == Access::write || b.access == Access::modify) &&
+                schedule.contents()[*b.content].is_drawn(*b.content)) {
                 at(plan, *b.content) = fold(input, *b.content);
             }
         }
@@ -165,6 +171,7 @@ std::vector<PassWork> random_work(Random& random, std::size_t passes) {
     for (PassWork& w : work) {
         w.idle = chance(random, 25);
         w.region = chance(random, 10);
+        w.empty_bindings = chance(random, 30) ? static_cast<std::uint32_t>(random() % 16) : 0;
         w.cacheable = chance(random, 90);
         w.key = chance(random, 5) ? 0 : 1 + (chance(random, 15) ? pick(random, 3) : 0);
     }
@@ -367,6 +374,29 @@ TEST_F(ScheduleOfChain, RegionIsReportedAsReduced) {
     EXPECT_EQ(schedule.passes()[0].reason, "3 of 40 bricks");
     frame();
     EXPECT_EQ(statuses(), (std::vector{cached, cached, cached}));
+}
+
+TEST_F(ScheduleOfChain, BindingLeftEmptyIsAsThatOfAnIdlePass) {
+    work[1].empty_bindings = 2;  // its output; it has a passthrough
+    work[0].empty_bindings = 1;
+    frame();
+    const std::size_t a = *plan.passes[1].bindings[0].content;
+    const std::size_t b = *plan.passes[1].bindings[1].content;
+    EXPECT_TRUE(schedule.contents()[a].empty);
+    EXPECT_TRUE(schedule.contents()[b].empty);
+    EXPECT_EQ(schedule.contents()[b].holder, a);
+    EXPECT_EQ(statuses(), (std::vector{culled, culled, run}));
+}
+
+TEST_F(ScheduleOfChain, InStepsEmptinessIsKnownBeforeTheNextWork) {
+    schedule.begin(plan, held);
+    schedule.work(plan, 0, {.idle = true});
+    EXPECT_TRUE(schedule.contents()[*plan.passes[1].bindings[0].content].empty);
+    schedule.work(plan, 1, {.idle = true});
+    EXPECT_TRUE(schedule.contents()[*plan.passes[2].bindings[0].content].empty);
+    schedule.work(plan, 2, {.key = 1});
+    schedule.decide(plan);
+    EXPECT_EQ(statuses(), (std::vector{idle, idle, run}));
 }
 
 TEST_F(ScheduleOfChain, LostTextureIsDrawnAgain) {
