@@ -40,8 +40,8 @@ struct GraphPort {
     std::string target;  ///< the target's name: "contrast.main"
     Access access = Access::read;
     bool optional = false;  ///< a read without a writer above is then no fault: the input is empty
-    /// For a write: the read port whose content stands in for this output in a frame in which the pass has
-    /// nothing to do, without a copy. Empty: the output then holds its clear value.
+    /// For a write: the read or `previous` port whose content stands in for this output in a frame in which
+    /// the pass has nothing to do, without a copy. Empty: the output then holds its clear value.
     std::string passthrough;
 };
 

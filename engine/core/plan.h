@@ -50,7 +50,7 @@ struct PlanBinding {
     std::string port;
     Access access = Access::read;
     /// The content sampled (read, previous) or drawn into (write, modify: the new content). None: an optional
-    /// read that nothing writes, or a write of a culled name.
+    /// read that nothing writes, or a write (not of depth) that nobody needs.
     std::optional<std::size_t> content;
 };
 
