@@ -118,15 +118,15 @@ float Smoke::sample(const glm::dvec3& p) const {
 
 GrayImage Smoke::project(const SmokeView& view, int size) const {
     constexpr double step = 1.25 * grid_step;
-    constexpr double opacity = 26.0;  // per unit length at density 1
-    const double angle = glm::radians(view.angle_deg);
+    constexpr double opacity = 26.0;                           // per unit length at density 1
+    const double angle = glm::radians(90.0 - view.angle_deg);  // away from the side view
     const glm::dvec3 up(0.0, std::cos(angle), std::sin(angle));
     const glm::dvec3 sight(0.0, std::sin(angle), -std::cos(angle));
     GrayImage image(size, size);
     for (int y = 0; y < size; ++y) {
         for (int x = 0; x < size; ++x) {
             const glm::dvec2 uv = pixel_uv(x, y, size);
-            const glm::dvec2 offset = uv - view.base_uv;
+            const glm::dvec2 offset = (uv - view.base_uv) / view.magnification;
             const glm::dvec3 origin = glm::dvec3(offset.x, 0.0, 0.0) + offset.y * up;
             const auto [enter, leave] = through_grid(origin, sight);
             double thickness = 0.0;

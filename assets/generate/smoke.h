@@ -11,19 +11,22 @@
 
 namespace viscera::assets {
 
-/// One picture of the plume: the angle between its side view and this view, and where its base lies.
+/// One picture of the plume: from where it is seen, and where and how large it lies in the sprite.
 struct SmokeView {
     std::string_view name;
-    double angle_deg;    ///< 0: axis in the picture plane, pointing up; 90: axis along the line of sight
-    glm::dvec2 base_uv;  ///< sprite UV (origin bottom-left) of the point where the smoke leaves the vessel
+    double angle_deg;      ///< between the line of sight and the plume's axis; 90: from the side
+    glm::dvec2 base_uv;    ///< sprite UV (origin bottom-left) of the point where the smoke leaves the vessel
+    double magnification;  ///< against the side view
 };
 
-/// The views that sprites are made for, in order of angle. Near 90 degrees the base lies under the smoke.
-inline constexpr std::array<SmokeView, 5> smoke_views{{{"smoke_side", 0.0, {0.55, 0.15}},
-                                                       {"smoke_22", 22.5, {0.55, 0.15}},
-                                                       {"smoke_45", 45.0, {0.55, 0.17}},
-                                                       {"smoke_67", 67.5, {0.545, 0.29}},
-                                                       {"smoke_front", 90.0, {0.54, 0.5}}}};
+/// The views that sprites are made for. A sprite is drawn in proportion to the plume's foreshortened length,
+/// so slanted views are magnified by 1 / sin(angle), as far as the sprite has room. From the front the base
+/// lies under the smoke.
+inline constexpr std::array<SmokeView, 5> smoke_views{{{"smoke_side", 90.0, {0.55, 0.15}, 1.0},
+                                                       {"smoke_67", 67.5, {0.55, 0.15}, 1.08},
+                                                       {"smoke_45", 45.0, {0.55, 0.15}, 1.41},
+                                                       {"smoke_22", 22.5, {0.55, 0.15}, 1.41},
+                                                       {"smoke_front", 0.0, {0.55, 0.5}, 1.5}}};
 
 /// A plume of contrast agent in still blood: one density field, of which every view is a projection, so that
 /// neighbouring views blend. Lengths are in units of the sprite's edge; the plume starts at the origin and
