@@ -35,7 +35,8 @@ struct Port {
     /// asks for it.
     bool optional = false;
     std::string passthrough;  ///< for a write: the read port that stands in for it while the pass is idle
-    bool overwrites = false;  ///< for a write: draw() sets every pixel of the region, so nothing need be cleared before
+    bool overwrites =
+        false;  ///< for a write: draw() sets every pixel of the region, so nothing need be cleared before
 };
 
 /// What there is to do for an effect in one frame.

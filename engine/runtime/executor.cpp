@@ -179,8 +179,10 @@ void Executor::draw(const Frame& frame, std::size_t p) {
     for (std::size_t b = 0; b < pass.bindings.size(); ++b) {
         const PlanBinding& binding = pass.bindings[b];
         const ContentState* content = binding.content ? &schedule_.contents()[*binding.content] : nullptr;
-        const gl::Texture* texture =
-            content == nullptr || content->empty ? nullptr : &texture_of(content->holder);
+        const bool held = content != nullptr && !content->empty;
+        // What stands in for an output is another's: it is not drawn into.
+        const bool drawn = held && (!makes_content(binding.access) || content->holder == *binding.content);
+        const gl::Texture* texture = drawn ? &texture_of(content->holder) : nullptr;
         if (!makes_content(binding.access)) {
             state.inputs.push_back({binding.port, texture});
             continue;

@@ -80,6 +80,9 @@ class Renderer {
     /// Renders one frame. The report is valid until the next call.
     const FrameReport& render(const Frame& frame);
 
+    /// Targets kept to the end of each frame besides the scene's outputs, so that they can be presented and
+    /// read.
+    void keep(std::vector<std::string> targets);
     /// Which targets the next frames read back, and who receives them.
     void set_dump(DumpRequest request, CaptureSink sink);
     /// Hands over captures that have arrived, without waiting.

@@ -1,0 +1,44 @@
+#include "effects/register_all.h"
+
+#include "effects/contrast/composite_effect.h"
+#include "effects/contrast/distance_view_effect.h"
+#include "effects/contrast/geometry_effect.h"
+#include "effects/contrast/silhouette_effect.h"
+#include "effects/contrast/sprite_effect.h"
+#include "effects/contrast/summarize_effect.h"
+#include "effects/filter/gaussian_effect.h"
+#include "effects/picture/image_effect.h"
+
+namespace viscera {
+
+void register_all(Registry& registry) {
+    using namespace contrast;
+    using Outputs = GeometryEffect::Outputs;
+    registry.add("contrast.geometry",
+                 "Vessels, injection cloud and distance map in one pass over the vessel surface.",
+                 [] { return std::make_unique<GeometryEffect>(Outputs{}); });
+    registry.add("contrast.main", "The vessels alone.",
+                 [] { return std::make_unique<GeometryEffect>(Outputs{.cloud = false, .distance = false}); });
+    registry.add("contrast.cloud", "The injection cloud alone.",
+                 [] { return std::make_unique<GeometryEffect>(Outputs{.main = false, .distance = false}); });
+    registry.add("contrast.distance", "The distance map alone.",
+                 [] { return std::make_unique<GeometryEffect>(Outputs{.main = false, .cloud = false}); });
+    registry.add("contrast.summarize", "Joins the vessels with the injection cloud.",
+                 [] { return std::make_unique<SummarizeEffect>(); });
+    registry.add("contrast.silhouette", "Where a mesh is seen: a mask for smoke.",
+                 [] { return std::make_unique<SilhouetteEffect>(); });
+    registry.add("contrast.reflux", "Contrast that flows back out of a vessel's mouth, as smoke.",
+                 [] { return std::make_unique<SpriteEffect>("contrast.reflux"); });
+    registry.add("contrast.extravasate", "Contrast that leaves a ruptured vessel, as smoke.",
+                 [] { return std::make_unique<SpriteEffect>("contrast.extravasate"); });
+    registry.add("contrast.composite", "Contrast over the background X-ray: the picture on the detector.",
+                 [] { return std::make_unique<CompositeEffect>(); });
+    registry.add("contrast.distance_view", "The distance map in colours for inspection.",
+                 [] { return std::make_unique<DistanceViewEffect>(); });
+    registry.add("filter.gaussian", "One direction of a Gaussian blur.",
+                 [] { return std::make_unique<filter::GaussianEffect>(); });
+    registry.add("picture.image", "A picture file as a target.",
+                 [] { return std::make_unique<picture::ImageEffect>(); });
+}
+
+}  // namespace viscera

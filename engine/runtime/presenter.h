@@ -1,0 +1,21 @@
+#pragma once
+
+#include "engine/core/plan.h"
+#include "engine/runtime/pass.h"
+
+namespace viscera {
+
+/// Shows a target in the framebuffer and viewport that the caller names.
+class Presenter {
+  public:
+    explicit Presenter(const Pass::Shared& shared);
+
+    /// texture: null where the target holds nothing but its clear value.
+    void present(const Present& present, const gl::Texture* texture, const PlanContent& content);
+
+  private:
+    Pass::Shared shared_;
+    ShaderLibrary::Entry& program_;
+};
+
+}  // namespace viscera

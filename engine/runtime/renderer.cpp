@@ -1,0 +1,318 @@
+#include "engine/runtime/renderer.h"
+
+#include <algorithm>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/core/error.h"
+#include "engine/core/hash.h"
+#include "engine/gl/capabilities.h"
+#include "engine/gl/debug.h"
+#include "engine/gl/host_state.h"
+#include "engine/gl/pixel_transfer.h"
+#include "engine/runtime/capture.h"
+#include "engine/runtime/embedded_shaders.h"
+#include "engine/runtime/executor.h"
+#include "engine/runtime/presenter.h"
+#include "engine/runtime/scene_graph.h"
+
+namespace viscera {
+namespace {
+
+/// One black texel for inputs that are empty.
+gl::Texture make_black(const gl::Functions& gl) {
+    gl::Texture black = gl::Texture::make_2d(gl, 1, 1, PixelFormat::rgba8, "black");
+    const std::array<std::byte, 4> texel{};
+    black.upload(texel);
+    return black;
+}
+
+bool same(const ImportedTarget& a, const ImportedTexture& b) {
+    return a.name == b.target && a.format == b.format && a.width == b.width && a.height == b.height &&
+           a.writable == b.writable;
+}
+
+ContextInfo describe(const gl::Capabilities& capabilities) {
+    ContextInfo info;
+    info.vendor = capabilities.vendor;
+    info.renderer = capabilities.renderer;
+    info.version = capabilities.version;
+    info.major = capabilities.major;
+    info.minor = capabilities.minor;
+    info.software = capabilities.software;
+    return info;
+}
+
+}  // namespace
+
+/// Members are destroyed in reverse order: all that holds OpenGL objects before the functions that delete
+/// them.
+class Renderer::Impl {
+  public:
+    Impl(ProcAddress proc, const Registry& registry, RendererOptions options)
+        : log_(options.log),
+          registry_(registry),
+          gl_(gl::Functions::load(proc)),
+          capabilities_(gl::Capabilities::query(*gl_)),
+          info_(describe(capabilities_)),
+          host_state_(*gl_),
+          entry_(host_state_, log_),
+          assets_(log_),
+          shaders_(*gl_, options.shaders ? options.shaders : embedded_shader_reader(), log_),
+          samplers_(*gl_),
+          black_(make_black(*gl_)),
+          no_vertices_(*gl_),
+          shared_{*gl_, shaders_, samplers_, black_, no_vertices_, assets_, log_},
+          executor_(shared_, capabilities_, {.timers = options.timers, .check_errors = options.check_errors}),
+          presenter_(shared_),
+          capture_(*gl_) {
+        entry_.leave();
+    }
+
+    void set_scene(Scene scene) {
+        SceneEffects effects = make_effects(scene, registry_);
+        // Compiled once for its faults, so that a scene that cannot run is refused while the old one still
+        // can.
+        if (scene_needs_no_import(scene)) {
+            (void)compile_or_throw(build_graph(scene, effects, {}), scene.width, scene.height,
+                                   capabilities_.max_texture_2d);
+        }
+        scene_ = std::move(scene);
+        effects_ = std::move(effects);
+        planned_ = false;
+    }
+
+    void set_parameter(std::string_view pass, std::string_view pointer, const nlohmann::json& value) {
+        const auto found = std::ranges::find(scene_.passes, pass, &ScenePass::name);
+        if (found == scene_.passes.end()) {
+            throw Error(ErrorCode::scene, std::string(pass), "the scene has no pass of this name");
+        }
+        Scene changed = scene_;
+        ScenePass& target = changed.passes[static_cast<std::size_t>(found - scene_.passes.begin())];
+        target.parameters[nlohmann::json::json_pointer(std::string(pointer))] = value;
+        set_scene(std::move(changed));
+    }
+
+    const FrameReport& render(const Frame& frame) {
+        const gl::CpuTimer timer;
+        if (frame.width < 1 || frame.height < 1) {
+            throw Error(ErrorCode::usage, "frame", "needs a width and a height of at least 1 pixel");
+        }
+        std::optional<gl::HostStateScope> scope;
+        if (frame.host_state == HostStatePolicy::restore) {
+            scope.emplace(host_state_, log_);
+        } else {
+            gl::drain_errors(*gl_);
+        }
+        std::optional<gl::DebugMessages> messages;
+        if (capabilities_.debug_context) {
+            messages.emplace(*gl_, log_);
+        }
+        plan_for(frame);
+        report_.index = frame.index;
+        report_.time_s = frame.time_s;
+        report_.targets.clear();
+        executor_.run(frame, report_);
+        if (frame.present.enabled) {
+            present(frame.present);
+        }
+        report_.cpu_ms = timer.milliseconds();
+        if (!dump_names_.empty()) {
+            capture_.start(report_, dump_names_, executor_);
+        }
+        return report_;
+    }
+
+    void set_dump(DumpRequest request, CaptureSink sink) {
+        dump_ = std::move(request);
+        capture_.set_sink(std::move(sink));
+        planned_ = false;
+    }
+
+    void keep(std::vector<std::string> targets) {
+        kept_ = std::move(targets);
+        planned_ = false;
+    }
+
+    template <class Work>
+    auto with_host_state(Work&& work) {
+        const gl::HostStateScope scope(host_state_, log_);
+        return work();
+    }
+
+    Image read(std::string_view target) {
+        const std::optional<Executor::Output> output = executor_.output(target);
+        if (!output) {
+            throw Error(ErrorCode::usage, std::string(target),
+                        "is no output of the last frame; dump it to have it kept");
+        }
+        if (output->texture == nullptr) {
+            return clear_image(*output->content);
+        }
+        return with_host_state([&] { return gl::read_texture(*gl_, *output->texture); });
+    }
+
+    unsigned texture(std::string_view output) const {
+        const std::optional<Executor::Output> found = executor_.output(output);
+        return found && found->texture != nullptr ? found->texture->id() : 0;
+    }
+
+    Log log_;
+    const Registry& registry_;
+    std::unique_ptr<const gl::Functions> gl_;
+    gl::Capabilities capabilities_;
+    ContextInfo info_;
+    gl::HostState host_state_;
+    /// Keeps the host's state while the constructor makes objects.
+    struct Entry {
+        Entry(gl::HostState& state, Log& log) { scope.emplace(state, log); }
+        void leave() { scope.reset(); }
+        std::optional<gl::HostStateScope> scope;
+    } entry_;
+    Assets assets_;
+    ShaderLibrary shaders_;
+    Samplers samplers_;
+    gl::Texture black_;
+    gl::VertexArray no_vertices_;
+    Pass::Shared shared_;
+    Scene scene_;
+    SceneEffects effects_;
+    Executor executor_;
+    Presenter presenter_;
+    Capture capture_;
+    DumpRequest dump_;
+    std::vector<std::string> kept_;
+    std::vector<std::string> dump_names_;
+    std::vector<ImportedTarget> imported_;
+    bool planned_ = false;
+    FrameReport report_;
+
+  private:
+    bool scene_needs_no_import(const Scene& scene) const {
+        return imported_.empty() && !scene.passes.empty();
+    }
+
+    void plan_for(const Frame& frame) {
+        const bool same_imports = std::ranges::equal(imported_, frame.imported, same);
+        if (planned_ && same_imports && executor_.plan().width == frame.width &&
+            executor_.plan().height == frame.height) {
+            return;
+        }
+        imported_.clear();
+        for (const ImportedTexture& texture : frame.imported) {
+            imported_.push_back(
+                {texture.target, texture.format, texture.width, texture.height, texture.writable});
+        }
+        const auto compile_with = [&](const std::vector<std::string>& more) {
+            return compile_or_throw(build_graph(scene_, effects_, imported_, more), frame.width, frame.height,
+                                    capabilities_.max_texture_2d);
+        };
+        dump_names_.clear();
+        switch (dump_.kind) {
+            case DumpRequest::Kind::none:
+                break;
+            case DumpRequest::Kind::outputs:
+                dump_names_ = scene_.outputs;
+                break;
+            case DumpRequest::Kind::names:
+                dump_names_ = dump_.names;
+                break;
+            case DumpRequest::Kind::all:
+                dump_names_ = live_targets(compile_with({}));
+                break;
+        }
+        // What is read back is an output: it keeps its texture to the end of the frame.
+        std::vector<std::string> more = dump_names_;
+        more.insert(more.end(), kept_.begin(), kept_.end());
+        executor_.set_plan(compile_with(more), imported_, effects_);
+        planned_ = true;
+    }
+
+    static std::vector<std::string> live_targets(const Plan& plan) {
+        std::vector<std::string> names;
+        for (const PlanContent& content : plan.contents) {
+            if (content.writer && content.texture &&
+                std::ranges::find(names, content.target) == names.end()) {
+                names.push_back(content.target);
+            }
+        }
+        return names;
+    }
+
+    void present(const Present& present) {
+        const std::string& name = present.output.empty() ? scene_.outputs.front() : present.output;
+        const std::optional<Executor::Output> output = executor_.output(name);
+        if (!output) {
+            throw Error(ErrorCode::usage, name, "cannot be presented: it is no output of the scene");
+        }
+        presenter_.present(present, output->texture, *output->content);
+    }
+};
+
+Renderer::Renderer(ProcAddress proc, const Registry& registry, RendererOptions options)
+    : impl_(std::make_unique<Impl>(proc, registry, std::move(options))) {}
+Renderer::~Renderer() = default;
+Renderer::Renderer(Renderer&&) noexcept = default;
+Renderer& Renderer::operator=(Renderer&&) noexcept = default;
+
+void Renderer::set_scene(Scene scene) {
+    impl_->with_host_state([&] { impl_->set_scene(std::move(scene)); });
+}
+const Scene& Renderer::scene() const {
+    return impl_->scene_;
+}
+void Renderer::set_parameter(std::string_view pass, std::string_view pointer, const nlohmann::json& value) {
+    impl_->with_host_state([&] { impl_->set_parameter(pass, pointer, value); });
+}
+
+Frame Renderer::still(double time_s) const {
+    const Scene& scene = impl_->scene_;
+    Frame frame{.width = scene.width, .height = scene.height, .time_s = time_s};
+    frame.eyes[0] = make_view(scene.camera, frame.aspect(), time_s);
+    return frame;
+}
+Frame Renderer::frame(std::uint64_t index) const {
+    Frame frame = still(static_cast<double>(index) / impl_->scene_.frames_per_second);
+    frame.index = index;
+    return frame;
+}
+
+const FrameReport& Renderer::render(const Frame& frame) {
+    return impl_->render(frame);
+}
+void Renderer::set_dump(DumpRequest request, CaptureSink sink) {
+    impl_->set_dump(std::move(request), std::move(sink));
+}
+void Renderer::keep(std::vector<std::string> targets) {
+    impl_->keep(std::move(targets));
+}
+void Renderer::poll_captures() {
+    impl_->with_host_state([&] { impl_->capture_.poll(false); });
+}
+void Renderer::finish_captures() {
+    impl_->with_host_state([&] { impl_->capture_.poll(true); });
+}
+Image Renderer::read(std::string_view target) {
+    return impl_->read(target);
+}
+unsigned Renderer::texture(std::string_view output) const {
+    return impl_->texture(output);
+}
+const Plan& Renderer::plan() const {
+    return impl_->executor_.plan();
+}
+int Renderer::reload_shaders(const std::filesystem::path& glsl_folder) {
+    return impl_->with_host_state(
+        [&] { return impl_->shaders_.reload(shader_reader_from_folder(glsl_folder)); });
+}
+Log& Renderer::log() {
+    return impl_->log_;
+}
+const ContextInfo& Renderer::context_info() const {
+    return impl_->info_;
+}
+std::size_t Renderer::asset_count() const {
+    return impl_->assets_.size();
+}
+
+}  // namespace viscera

@@ -1,0 +1,36 @@
+#include "engine/runtime/report.h"
+
+#include <nlohmann/json.hpp>
+
+namespace viscera {
+
+nlohmann::json to_json(const FrameReport& report) {
+    nlohmann::json passes = nlohmann::json::array();
+    for (const PassReport& pass : report.passes) {
+        passes.push_back({{"name", pass.name},
+                          {"effect", pass.effect},
+                          {"status", to_string(pass.status)},
+                          {"reason", pass.reason},
+                          {"cpu_ms", pass.cpu_ms},
+                          {"gpu_ms", pass.gpu_ms ? nlohmann::json(*pass.gpu_ms) : nlohmann::json()}});
+    }
+    nlohmann::json targets = nlohmann::json::array();
+    for (const TargetReport& target : report.targets) {
+        targets.push_back({{"name", target.name},
+                           {"format", info(target.format).name},
+                           {"width", target.width},
+                           {"height", target.height},
+                           {"file", target.file},
+                           {"min", target.min},
+                           {"max", target.max},
+                           {"nan", target.nan},
+                           {"inf", target.inf}});
+    }
+    return {{"frame", report.index},
+            {"time_s", report.time_s},
+            {"cpu_ms", report.cpu_ms},
+            {"passes", std::move(passes)},
+            {"targets", std::move(targets)}};
+}
+
+}  // namespace viscera
