@@ -96,9 +96,17 @@ void check(const std::filesystem::path& file, std::span<const ExrPart> parts) {
     }
 }
 
-Imf::Header make_header(const ExrPart& part, ExrCompression compression) {
-    const Imath::Box2i window({0, 0}, {part.image.width - 1, part.image.height - 1});
-    Imf::Header header(window, window);
+/// OpenEXR wants one display window for all parts of a file: the one that holds every picture.
+Imath::Box2i display_window(std::span<const ExrPart> parts) {
+    Imath::Box2i window({0, 0}, {0, 0});
+    for (const ExrPart& part : parts) {
+        window.extendBy(Imath::V2i(part.image.width - 1, part.image.height - 1));
+    }
+    return window;
+}
+
+Imf::Header make_header(const ExrPart& part, const Imath::Box2i& display, ExrCompression compression) {
+    Imf::Header header(display, Imath::Box2i({0, 0}, {part.image.width - 1, part.image.height - 1}));
     header.compression() = to_imf(compression);
     if (!part.name.empty()) {
         header.setName(part.name);
@@ -158,15 +166,16 @@ void write_pixels(File& file, const ExrPart& part) {
 }
 
 void encode(Imf::OStream& stream, std::span<const ExrPart> parts, ExrCompression compression) {
+    const Imath::Box2i display = display_window(parts);
     if (parts.size() == 1) {
-        Imf::OutputFile file(stream, make_header(parts[0], compression));
+        Imf::OutputFile file(stream, make_header(parts[0], display, compression));
         write_pixels(file, parts[0]);
         return;
     }
     std::vector<Imf::Header> headers;
     headers.reserve(parts.size());
     for (const ExrPart& part : parts) {
-        headers.push_back(make_header(part, compression));
+        headers.push_back(make_header(part, display, compression));
     }
     Imf::MultiPartOutputFile file(stream, headers.data(), static_cast<int>(headers.size()));
     for (std::size_t i = 0; i < parts.size(); ++i) {

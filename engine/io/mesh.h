@@ -13,8 +13,8 @@
 namespace viscera::io {
 
 struct MeshOptions {
-    std::optional<double> scale_mm_per_unit;  ///< > 0; none: 1000 for glTF (metres), 1 for all others
-    std::string name_filter;  ///< only meshes or glTF nodes whose name contains this; empty: all
+    std::optional<double> scale_mm_per_unit{};  ///< > 0; none: 1000 for glTF (metres), 1 for all others
+    std::string name_filter{};  ///< only meshes or glTF nodes whose name contains this; empty: all
 };
 
 /// Reads a surface mesh: .gltf, .glb, .stl, .obj, .ply or .vtp. Positions come in mm in the file's own axes,

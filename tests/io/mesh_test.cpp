@@ -1,0 +1,176 @@
+#include "engine/io/mesh.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "engine/core/error.h"
+#include "engine/io/file_info.h"
+#include "tests/io/sample_files.h"
+#include "tests/io/temp_folder.h"
+
+namespace viscera::io {
+namespace {
+
+using test::TempFolder;
+using testing::HasSubstr;
+
+std::string message_of(const auto& action) {
+    try {
+        action();
+    } catch (const Error& error) {
+        return error.what();
+    }
+    ADD_FAILURE() << "nothing was thrown";
+    return "";
+}
+
+class Meshes : public testing::Test {
+  protected:
+    std::vector<MeshData> load(const char* name, const std::string& bytes, const MeshOptions& options = {}) {
+        std::vector<MeshData> meshes = load_meshes(folder_.write(name, bytes), options, log_);
+        for (const MeshData& mesh : meshes) {
+            test::expect_valid(mesh);
+        }
+        return meshes;
+    }
+
+    TempFolder folder_;
+    Log log_;
+};
+
+TEST_F(Meshes, EveryFormatGivesTheSameTetrahedron) {
+    const std::vector<std::pair<const char*, std::string>> files{
+        {"a.stl", test::tetra_stl()}, {"text.stl", test::tetra_stl_text()}, {"a.obj", test::tetra_obj()},
+        {"a.ply", test::tetra_ply()}, {"b.ply", test::tetra_ply_binary()},  {"a.vtp", test::tetra_vtp()},
+        {"A.GLB", test::tetra_glb()}};
+    for (const auto& [name, bytes] : files) {
+        const std::vector<MeshData> meshes = load(name, bytes);
+        ASSERT_EQ(meshes.size(), 1U) << name;
+        const double edge_mm = std::string_view(name) == "A.GLB" ? 1000.0 : 1.0;
+        EXPECT_EQ(meshes[0].positions.size(), 4U) << name;
+        EXPECT_EQ(meshes[0].triangle_count(), 4U) << name;
+        EXPECT_NEAR(test::volume_of(meshes[0]) / (edge_mm * edge_mm * edge_mm), 1.0 / 6.0, 1e-6) << name;
+        for (std::size_t v = 0; v < 4; ++v) {  // computed normals point away from the middle
+            const glm::vec3 middle(0.25F * static_cast<float>(edge_mm));
+            EXPECT_GT(glm::dot(meshes[0].normals[v], meshes[0].positions[v] - middle), 0.0F) << name;
+        }
+    }
+    EXPECT_TRUE(log_.faults().empty());
+}
+
+TEST_F(Meshes, ScaleReplacesTheFormatsOwn) {
+    EXPECT_EQ(load("a.glb", test::tetra_glb(), {.scale_mm_per_unit = 2.0})[0].bounds().max.x, 2.0F);
+    EXPECT_EQ(load("a.stl", test::tetra_stl(), {.scale_mm_per_unit = 10.0})[0].bounds().max.z, 10.0F);
+    for (const double bad : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()}) {
+        EXPECT_THROW(static_cast<void>(load("a.stl", test::tetra_stl(), {.scale_mm_per_unit = bad})), Error);
+    }
+}
+
+TEST_F(Meshes, BadTrianglesAreCountedAndDropped) {
+    const std::string points = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 2 0 0\nv nan 0 0\n";
+    const MeshData mesh = load("a.obj", points + "f 1 2 3\nf 1 2 4\nf 1 1 2\nf 1 2 5\n").at(0);
+    EXPECT_EQ(mesh.triangle_count(), 1U);
+    EXPECT_EQ(mesh.positions.size(), 3U);
+    const auto faults = log_.faults();
+    EXPECT_EQ(faults.at("mesh: triangles without area dropped"), 2U);
+    EXPECT_EQ(faults.at("mesh: triangles with a vertex that is not finite dropped"), 1U);
+}
+
+TEST_F(Meshes, NothingLeftIsSaidAndReturned) {
+    const std::vector<MeshData> meshes = load("a.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
+    ASSERT_EQ(meshes.size(), 1U);
+    EXPECT_TRUE(meshes[0].indices.empty());
+    EXPECT_TRUE(meshes[0].positions.empty());
+    EXPECT_EQ(log_.faults().at("mesh: without triangles"), 1U);
+}
+
+TEST_F(Meshes, PolygonsAreSplit) {
+    const MeshData mesh = load("a.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n").at(0);
+    EXPECT_EQ(mesh.triangle_count(), 2U);
+    EXPECT_EQ(mesh.positions.size(), 4U);
+    EXPECT_EQ(mesh.normals[0], glm::vec3(0.0F, 0.0F, 1.0F));
+}
+
+TEST_F(Meshes, ErrorsNameTheFile) {
+    EXPECT_THAT(message_of([&] { load("a.fbx", "x"); }), HasSubstr("a.fbx: is no mesh that can be read"));
+    EXPECT_THAT(message_of([&] { load("a.stl", "x"); }), HasSubstr("a.stl: is no readable mesh"));
+    EXPECT_THAT(message_of([&] { static_cast<void>(load_meshes(folder_ / "no.stl", {}, log_)); }),
+                HasSubstr("no.stl: cannot be opened"));
+    EXPECT_THAT(message_of([&] { load("a.glb", test::tetra_glb(), {.name_filter = "vein"}); }),
+                HasSubstr("no mesh has 'vein' in its name; there are 'node'"));
+}
+
+TEST_F(Meshes, FilterLooksAtNodeAndMeshNames) {
+    EXPECT_EQ(load("a.glb", test::tetra_glb(), {.name_filter = "nod"}).size(), 1U);
+    EXPECT_EQ(load("a.glb", test::tetra_glb(), {.name_filter = "tetra"}).size(), 1U);
+}
+
+MeshData triangle(float x) {
+    MeshData mesh;
+    mesh.positions = {{x, 0, 0}, {x + 1, 0, 0}, {x, 1, 0}};
+    mesh.indices = {0, 1, 2};
+    return mesh;
+}
+
+TEST(Merge, JoinsIndicesScalarsAndNormals) {
+    MeshData a = triangle(0.0F);
+    a.name = "a";
+    a.uvs.resize(3);
+    a.scalars = {{"_T", {1, 2, 3}}};
+    MeshData b = triangle(5.0F);
+    b.scalars = {{"_U", {4, 5, 6}}};
+    const MeshData merged = merge(std::vector<MeshData>{a, b});
+    test::expect_valid(merged);
+    EXPECT_EQ(merged.name, "a");
+    EXPECT_EQ(merged.indices, (std::vector<std::uint32_t>{0, 1, 2, 3, 4, 5}));
+    EXPECT_TRUE(merged.uvs.empty());
+    EXPECT_EQ(merged.normals[5], glm::vec3(0.0F, 0.0F, 1.0F));
+    ASSERT_EQ(merged.scalars.size(), 2U);
+    EXPECT_EQ(merged.scalars[0].values, (std::vector<float>{1, 2, 3, 0, 0, 0}));
+    EXPECT_EQ(merged.scalars[1].values, (std::vector<float>{0, 0, 0, 4, 5, 6}));
+    EXPECT_TRUE(merge({}).positions.empty());
+}
+
+TEST(VertexNormals, WeighByAngleNotByTheNumberOfTriangles) {
+    // Three sides of a cube at one corner, one of them split in two: its diagonal must not count twice.
+    MeshData mesh;
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {0, 1, 1}, {1, 0, 1}};
+    mesh.indices = {0, 2, 4, 0, 4, 1, 0, 3, 2, 0, 1, 3};
+    const glm::vec3 normal = vertex_normals(mesh)[0];
+    EXPECT_NEAR(normal.x, -1.0 / std::sqrt(3.0), 1e-6);
+    EXPECT_NEAR(normal.y, -1.0 / std::sqrt(3.0), 1e-6);
+    EXPECT_NEAR(normal.z, -1.0 / std::sqrt(3.0), 1e-6);
+}
+
+TEST(VertexNormals, BackToBackTrianglesStillHaveOne) {
+    MeshData mesh = triangle(0.0F);
+    mesh.indices = {0, 1, 2, 0, 2, 1};
+    EXPECT_EQ(vertex_normals(mesh)[1], glm::vec3(0.0F, 0.0F, 1.0F));
+}
+
+TEST(FileInfo, TellsClosedFromOpenAndWhichWayRound) {
+    const TempFolder folder;
+    nlohmann::json info = describe(folder.write("a.glb", test::tetra_glb()));
+    EXPECT_EQ(info["kind"], "meshes");
+    EXPECT_EQ(info["meshes"][0]["vertices"], 4);
+    EXPECT_EQ(info["meshes"][0]["closed"], true);
+    EXPECT_EQ(info["meshes"][0]["orientation"], "outward");
+    EXPECT_EQ(info["meshes"][0]["scalars"][0]["name"], "_DENSITY");
+    EXPECT_EQ(info["meshes"][0]["scalars"][0]["max"], 1.0);
+    info = describe(folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"));
+    EXPECT_EQ(info["meshes"][0]["closed"], false);
+}
+
+TEST(FileInfo, UnknownFilesSayWhatToDo) {
+    const TempFolder folder;
+    EXPECT_THAT(message_of([&] { static_cast<void>(describe(folder / "a.fbx")); }),
+                testing::AllOf(HasSubstr(".glb"), HasSubstr("Blender")));
+    EXPECT_THAT(message_of([&] { static_cast<void>(describe(folder / "a.xyz")); }), HasSubstr("assimp"));
+}
+
+}  // namespace
+}  // namespace viscera::io
