@@ -9,28 +9,34 @@
 
 namespace viscera::contrast {
 
-std::vector<float> vertex_arrival(const CentrelineGraph& graph, const FlowNetwork& network,
-                                  std::span<const glm::vec3> positions_mm, Log& log) {
-    std::vector<float> arrival(positions_mm.size(), unreached_s);
+std::vector<std::optional<TubeFoot>> vertex_feet(const CentrelineGraph& graph,
+                                                 std::span<const glm::vec3> positions_mm) {
+    std::vector<std::optional<TubeFoot>> feet(positions_mm.size());
     const TubeTree tree(graph);
-    std::uint64_t unreached = 0;
     std::optional<std::size_t> guess;
     for (std::size_t i = 0; i < positions_mm.size(); ++i) {
         const glm::dvec3 point(positions_mm[i]);
         const std::optional<TubeFoot> wall = tree.nearest_wall(point, guess);
-        if (!wall) {
+        if (wall) {
+            guess = wall->edge;  // neighbours in the mesh are mostly neighbours in memory
+            feet[i] = tree.slide(point, *wall);
+        }
+    }
+    return feet;
+}
+
+std::vector<float> vertex_arrival(const CentrelineGraph& graph, const FlowNetwork& network,
+                                  std::span<const std::optional<TubeFoot>> feet, Log& log) {
+    std::vector<float> arrival(feet.size(), unreached_s);
+    std::uint64_t unreached = 0;
+    for (std::size_t i = 0; i < feet.size(); ++i) {
+        if (!feet[i] || !network.carries_contrast(graph, feet[i]->edge)) {
             ++unreached;
             continue;
         }
-        guess = wall->edge;  // neighbours in the mesh are mostly neighbours in memory
-        const TubeFoot foot = tree.slide(point, *wall);
-        if (!network.carries_contrast(graph, foot.edge)) {
-            ++unreached;
-            continue;
-        }
-        const CentrelineGraph::Edge& edge = graph.edges[foot.edge];
-        arrival[i] =
-            static_cast<float>(std::lerp(network.arrival_s[edge.a], network.arrival_s[edge.b], foot.along));
+        const CentrelineGraph::Edge& edge = graph.edges[feet[i]->edge];
+        arrival[i] = static_cast<float>(
+            std::lerp(network.arrival_s[edge.a], network.arrival_s[edge.b], feet[i]->along));
     }
     if (unreached > 0) {
         log.fault(
@@ -39,6 +45,19 @@ std::vector<float> vertex_arrival(const CentrelineGraph& graph, const FlowNetwor
             unreached);
     }
     return arrival;
+}
+
+std::vector<float> vertex_radius(const CentrelineGraph& graph,
+                                 std::span<const std::optional<TubeFoot>> feet) {
+    std::vector<float> radius(feet.size(), 0.0F);
+    for (std::size_t i = 0; i < feet.size(); ++i) {
+        if (feet[i]) {
+            const CentrelineGraph::Edge& edge = graph.edges[feet[i]->edge];
+            radius[i] = static_cast<float>(
+                std::lerp(graph.nodes[edge.a].radius_mm, graph.nodes[edge.b].radius_mm, feet[i]->along));
+        }
+    }
+    return radius;
 }
 
 void smooth_arrival(std::span<float> arrival_s, std::span<const std::uint32_t> indices, int rounds) {

@@ -1,30 +1,39 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include <glm/glm.hpp>
 
 #include "effects/contrast/flow_network.h"
+#include "effects/contrast/tube_tree.h"
 #include "engine/core/log.h"
 #include "engine/core/mesh_data.h"
 
 namespace viscera::contrast {
 
-/// Arrival time [s] of each mesh vertex, taken from the centreline: one value per position, `unreached_s`
-/// where no contrast comes.
+/// Where each mesh vertex stands at the centreline: one foot per position, none for a position that is not
+/// finite or where there is no edge.
 ///
 /// The vessel that a vertex belongs to is that of the edge with the least `d - r`: d the distance from the
 /// vertex to the edge's segment, r the radius interpolated at the foot of the perpendicular. So it is the
 /// distance to the vessel's wall, negative within it, that counts, and a thin vessel beside a wide one does
 /// not capture the wide one's wall. Radii are noisy along a vessel, so the foot then slides to the joined
-/// edge as long as that makes d itself smaller. tau is linear along the edge between the times of its nodes.
-///
-/// Vertices at edges that carry no contrast are counted under "contrast.unreached_vertices".
-/// network must be the result of solve_flow() for this graph.
+/// edge as long as that makes d itself smaller.
+[[nodiscard]] std::vector<std::optional<TubeFoot>> vertex_feet(const CentrelineGraph& graph,
+                                                               std::span<const glm::vec3> positions_mm);
+
+/// Arrival time [s] of each foot, linear along the edge between the times of its nodes; `unreached_s` where
+/// no contrast comes, counted under "contrast.unreached_vertices". network must be the result of solve_flow()
+/// for this graph.
 [[nodiscard]] std::vector<float> vertex_arrival(const CentrelineGraph& graph, const FlowNetwork& network,
-                                                std::span<const glm::vec3> positions_mm, Log& log);
+                                                std::span<const std::optional<TubeFoot>> feet, Log& log);
+
+/// Radius of the vessel [mm] at each foot; 0 without one.
+[[nodiscard]] std::vector<float> vertex_radius(const CentrelineGraph& graph,
+                                               std::span<const std::optional<TubeFoot>> feet);
 
 /// Evens out arrival times over the mesh: in each round every vertex takes the mean of itself and the mean of
 /// its neighbours. Centrelines are jagged, so feet jump by some millimetres on the inside of a bend, and the

@@ -52,6 +52,7 @@ void EmitterParams::visit(ParamVisitor& v) {
              .min = 0.0,
              .min_excluded = true},
             size);
+    v.field({.name = "strength", .doc = "Scale of the smoke's density.", .min = 0.0, .max = 1.0}, strength);
     v.field({.name = "start_s", .doc = "Smokes from this time on.", .unit = "s"}, start_s);
     v.field({.name = "stop_s", .doc = "Until this time.", .unit = "s"}, stop_s);
 }
@@ -78,6 +79,7 @@ EmitterFault place(const EmitterParams& emitter, const View& view, glm::ivec2 si
     }
     quad.axis = (quad.tip - quad.base) / quad.length;
     quad.width = emitter.size * quad.length;
+    quad.strength = emitter.strength;
     const glm::dvec3 axis = glm::normalize(emitter.tip_mm - emitter.base_mm);
     const glm::dvec3 sight = view.direction_to(emitter.base_mm);
     const double cosine = std::abs(glm::dot(axis, sight));

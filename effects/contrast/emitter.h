@@ -16,6 +16,7 @@ struct EmitterParams {
     glm::dvec3 tip_mm{0.0, 0.0, 10.0};
     glm::dvec3 edge_mm{3.0, 0.0, 10.0};
     double size = 1.0;
+    double strength = 1.0;
     double start_s = 0.0;
     double stop_s = 1.0e9;
 
@@ -35,8 +36,9 @@ struct SpriteQuad {
     double width = 0.0;         ///< of the side view [pixels]
     double front_width = 0.0;   ///< of the front view [pixels]; 0: none
     double front_weight = 0.0;  ///< 1.1 f, f in [0, 1]
-    double angle_deg = 90.0;    ///< between the line of sight and the axis, 0 to 90
-    PixelRect cover;            ///< pixels that the smoke can touch, within the target
+    double strength = 1.0;
+    double angle_deg = 90.0;  ///< between the line of sight and the axis, 0 to 90
+    PixelRect cover;          ///< pixels that the smoke can touch, within the target
 };
 
 /// Where an emitter's smoke appears. Source of the formulas: the contrast thesis, appendix 2.e. `front`:

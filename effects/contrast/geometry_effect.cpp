@@ -61,6 +61,12 @@ struct GeometryEffect::GpuVessel {
     explicit GpuVessel(const gl::Functions& gl, const Vessel& vessel) : mesh(gl, vessel.mesh) {
         mesh.update_scalars("scalar", vessel.scalar);
         mesh.select_scalar("scalar");
+        if (!vessel.weight.empty()) {
+            std::vector<glm::vec2> uvs(vessel.weight.size());
+            std::ranges::transform(vessel.weight, uvs.begin(),
+                                   [](float weight) { return glm::vec2(weight, 0.0F); });
+            mesh.update_uvs(uvs);
+        }
     }
     gl::Mesh mesh;
     std::uint64_t host_version = 0;
@@ -76,12 +82,13 @@ void GeometryEffect::list_variants() {
     using enum Scalar;
     const bool alone = outputs_.main && !outputs_.cloud && !outputs_.distance;
     for (const Scalar scalar : {none, density, arrival, arrival_table}) {
-        for (int bits = 0; bits < 8; ++bits) {
-            const Variant variant{scalar, (bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0};
+        for (int bits = 0; bits < 16; ++bits) {
+            const Variant variant{scalar, (bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0, (bits & 8) != 0};
             const bool draws = scalar != none || variant.cloud || variant.distance;
             const bool made_here = (scalar == none || outputs_.main) && (!variant.cloud || outputs_.cloud) &&
                                    (!variant.distance || outputs_.distance);
-            if (!draws || !made_here || (variant.depth && !alone)) {
+            const bool weighted = scalar == arrival || scalar == arrival_table;
+            if (!draws || !made_here || (variant.depth && !alone) || (variant.calibre && !weighted)) {
                 continue;
             }
             int location = 0;
@@ -99,7 +106,10 @@ void GeometryEffect::list_variants() {
             if (variant.cloud || variant.distance) {
                 define("INJECTION");
             }
-            if (scalar == arrival || scalar == arrival_table) {
+            if (variant.calibre) {
+                define("CALIBRE");
+            }
+            if (weighted) {
                 define("ARRIVAL");
             }
             if (scalar == arrival_table) {
@@ -239,6 +249,7 @@ Work GeometryEffect::prepare(Prepare& prepare) {
         variant_.scalar = !arrival                          ? Scalar::density
                           : bolus_->table().samples.empty() ? Scalar::arrival
                                                             : Scalar::arrival_table;
+        variant_.calibre = arrival && !vessel_->weight.empty();
     }
     if (variant_.scalar == Scalar::none && !variant_.cloud && !variant_.distance) {
         return Work::idle(outputs_.main ? "no contrast in the vessels at this time"
@@ -283,6 +294,9 @@ void GeometryEffect::sort_triangles(GpuVessel& gpu) {
         std::ranges::transform(vessel_->scalar, vertex_density_.begin(), [this](float tau) {
             return static_cast<float>(bolus_->density(since_start_s_ - static_cast<double>(tau)));
         });
+        for (std::size_t i = 0; i < vessel_->weight.size(); ++i) {
+            vertex_density_[i] *= vessel_->weight[i];
+        }
         densities = vertex_density_;
     }
     painter_order(vessel_->mesh.indices, densities, PainterKey::max, scratch_, sorted_);

@@ -65,6 +65,7 @@ class GeometryEffect final : public Effect {
         bool cloud = false;
         bool distance = false;
         bool depth = false;
+        bool calibre = false;
         bool operator==(const Variant&) const = default;
     };
 

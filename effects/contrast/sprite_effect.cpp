@@ -217,7 +217,12 @@ Work SpriteEffect::prepare(Prepare& prepare) {
     key.add(prepare.parameters_key());
     PixelRect cover = quads_.front().cover;
     for (const SpriteQuad& quad : quads_) {
-        key.add(quad.base).add(quad.tip).add(quad.width).add(quad.front_width).add(quad.angle_deg);
+        key.add(quad.base)
+            .add(quad.tip)
+            .add(quad.width)
+            .add(quad.front_width)
+            .add(quad.angle_deg)
+            .add(quad.strength);
         const int right = std::max(cover.x + cover.width, quad.cover.x + quad.cover.width);
         const int top = std::max(cover.y + cover.height, quad.cover.y + quad.cover.height);
         cover.x = std::min(cover.x, quad.cover.x);
@@ -273,7 +278,7 @@ void SpriteEffect::draw(const Pass& pass) {
     for (std::size_t first = 0; first < quads_.size(); first += batch) {
         const std::size_t count = std::min(batch, quads_.size() - first);
         std::array<glm::vec4, batch> rect{};
-        std::array<glm::vec2, batch> base_uv{};
+        std::array<glm::vec3, batch> source{};
         std::array<glm::vec4, batch> base{};
         std::array<glm::vec4, batch> tip{};
         std::array<glm::vec4, batch> axis{};
@@ -284,7 +289,7 @@ void SpriteEffect::draw(const Pass& pass) {
             const glm::dvec2 whole_tip = glm::floor(quad.tip);
             const glm::vec2 low(quad.cover.x, quad.cover.y);
             rect[i] = glm::vec4(low / size, (low + glm::vec2(quad.cover.width, quad.cover.height)) / size);
-            base_uv[i] = glm::vec2(quad.base / glm::dvec2(size));
+            source[i] = glm::vec3(quad.base / glm::dvec2(size), quad.strength);
             base[i] = glm::vec4(whole_base, quad.base - whole_base);
             tip[i] = glm::vec4(whole_tip, quad.tip - whole_tip);
             axis[i] = glm::vec4(glm::vec2(quad.axis), 1.0 / quad.width, 1.0 / (0.3 * quad.length));
@@ -292,7 +297,7 @@ void SpriteEffect::draw(const Pass& pass) {
                                 quad.front_width > 0.0 ? 1.0 / quad.front_width : 0.0, quad.front_weight);
         }
         program.set("u_rect", std::span<const glm::vec4>(rect));
-        program.set("u_base_uv", std::span<const glm::vec2>(base_uv));
+        program.set("u_source", std::span<const glm::vec3>(source));
         program.set("u_base", std::span<const glm::vec4>(base));
         program.set("u_tip", std::span<const glm::vec4>(tip));
         program.set("u_axis", std::span<const glm::vec4>(axis));

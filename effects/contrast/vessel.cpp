@@ -18,14 +18,25 @@ namespace {
 
 constexpr std::array<std::string_view, 2> source_names{"arrival_time", "per_vertex"};
 
-std::vector<float> arrival(const Vessel& vessel, const VesselParams& params, Log& log) {
-    if (!params.centreline.empty()) {
-        const CentrelineGraph graph = io::load_centreline(params.centreline.path, log);
-        const FlowNetwork network = solve_flow(graph, params.flow, params.injection_mm, log);
-        return vertex_arrival(graph, network, vessel.mesh.positions, log);
+void find_arrival(Vessel& vessel, const VesselParams& params, Log& log) {
+    const std::vector<glm::vec3>& positions = vessel.mesh.positions;
+    if (params.centreline.empty()) {
+        vessel.scalar =
+            geodesic_arrival(positions, vessel.mesh.indices, *params.injection_mm, params.geodesic, log);
+        return;
     }
-    return geodesic_arrival(vessel.mesh.positions, vessel.mesh.indices, *params.injection_mm, params.geodesic,
-                            log);
+    const CentrelineGraph graph = io::load_centreline(params.centreline.path, log);
+    const FlowNetwork network = solve_flow(graph, params.flow, params.injection_mm, log);
+    const std::vector<std::optional<TubeFoot>> feet = vertex_feet(graph, positions);
+    vessel.scalar = vertex_arrival(graph, network, feet, log);
+    smooth_arrival(vessel.scalar, vessel.mesh.indices, params.smoothing_rounds);
+    if (params.full_calibre_mm > 0.0) {
+        vessel.weight = vertex_radius(graph, feet);
+        for (float& weight : vessel.weight) {
+            weight =
+                static_cast<float>(std::min(1.0, 2.0 * static_cast<double>(weight) / params.full_calibre_mm));
+        }
+    }
 }
 
 std::vector<float> density(const Vessel& vessel, const VesselParams& params, Log& log) {
@@ -68,11 +79,11 @@ std::shared_ptr<Vessel> make_vessel(const VesselParams& params, Log& log) {
         log.fault("contrast.no_triangles",
                   params.mesh.path.string() + ": this vessel has no triangles; nothing is drawn of it");
     }
-    vessel->scalar = params.density == DensitySource::arrival_time ? arrival(*vessel, params, log)
-                                                                   : density(*vessel, params, log);
     if (params.density == DensitySource::arrival_time) {
+        find_arrival(*vessel, params, log);
         find_arrival_range(*vessel, params);
     } else {
+        vessel->scalar = density(*vessel, params, log);
         vessel->injection_mm = params.injection_mm.value_or(glm::dvec3(0.0));
     }
     return vessel;
@@ -106,6 +117,19 @@ void VesselParams::visit(ParamVisitor& v) {
     v.field({.name = "centreline",
              .doc = "Centreline with radii (VTP or JSON); without one, contrast spreads over the surface."},
             centreline);
+    v.field({.name = "full_calibre_mm",
+             .doc = "With a centreline: vessels of this diameter or more show the bolus's whole density, "
+                    "thinner ones "
+                    "less in proportion, as the way of the rays through them shrinks; 0: all alike.",
+             .unit = "mm",
+             .min = 0.0},
+            full_calibre_mm);
+    v.field({.name = "smoothing_rounds",
+             .doc = "With a centreline: rounds in which arrival times are evened out over the surface, for a "
+                    "whole front.",
+             .min = 0.0,
+             .max = 100.0},
+            smoothing_rounds);
     v.field({.name = "injection_mm",
              .doc = "Where contrast enters, in the mesh's frame; needed without a centreline.",
              .unit = "mm"},

@@ -25,6 +25,8 @@ struct VesselParams {
     DensitySource density = DensitySource::arrival_time;
     std::string scalar = "DENSITY";
     AssetPath centreline;
+    double full_calibre_mm = 0.0;
+    int smoothing_rounds = 2;
     std::optional<glm::dvec3> injection_mm;
     FlowParams flow;
     GeodesicParams geodesic;
@@ -37,6 +39,8 @@ struct Vessel {
     MeshData mesh;
     Bounds bounds;
     std::vector<float> scalar;
+    /// Share of the bolus's density that shows, by the vessel's calibre; empty: all of it everywhere.
+    std::vector<float> weight;
     float first_arrival_s =
         0.0F;  ///< over the vertices that contrast reaches; first > last where it reaches none
     float last_arrival_s = -1.0F;

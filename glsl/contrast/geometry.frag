@@ -7,6 +7,9 @@
 #endif
 #include "contrast/opacity.glsl"
 in float v_scalar;
+#ifdef CALIBRE
+in float v_weight;
+#endif
 uniform float u_tone;
 layout(location = MAIN) out float o_main;
 #endif
@@ -33,6 +36,9 @@ void main() {
 #ifdef MAIN
 #ifdef ARRIVAL
     float density = bolus(v_scalar);
+#ifdef CALIBRE
+    density *= clamp(v_weight, 0.0, 1.0);
+#endif
 #else
     float density = clamp(v_scalar, 0.0, 1.0);
 #endif

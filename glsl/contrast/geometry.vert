@@ -7,6 +7,10 @@ in float a_scalar;  // ARRIVAL: arrival time [s]; otherwise density
 uniform float u_time_since_start;  // [s]
 #endif
 out float v_scalar;
+#ifdef CALIBRE
+in vec2 a_uv;  // x: share of the density that shows in a vessel of this calibre
+out float v_weight;
+#endif
 #endif
 #ifdef INJECTION
 uniform vec3 u_injection_point;  // [mm]
@@ -15,6 +19,9 @@ out vec3 v_from_injection;
 uniform mat4 u_view_projection;
 
 void main() {
+#ifdef CALIBRE
+    v_weight = a_uv.x;
+#endif
 #ifdef MAIN
 #ifdef ARRIVAL
     // The difference is formed here: near the front it is small, and so is the rounding of its interpolation.

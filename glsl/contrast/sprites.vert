@@ -3,7 +3,7 @@
 // found here, once per corner, and a sprite of no brightness shrinks to nothing.
 const int batch = 16;
 uniform vec4 u_rect[batch];      // target uv: low, high
-uniform vec2 u_base_uv[batch];
+uniform vec3 u_source[batch];    // target uv of the base, strength
 uniform sampler2D u_summary;
 flat out int v_emitter;
 flat out float v_brightness;
@@ -22,7 +22,8 @@ float brightest_around(vec2 base) {
 
 void main() {
     v_emitter = gl_InstanceID;
-    v_brightness = brightest_around(u_base_uv[gl_InstanceID]);
+    vec3 source = u_source[gl_InstanceID];
+    v_brightness = source.z * brightest_around(source.xy);
     vec4 rect = u_rect[gl_InstanceID];
     vec2 corner = vec2(float(gl_VertexID & 1), float(gl_VertexID >> 1));
     vec2 uv = v_brightness > 0.0 ? mix(rect.xy, rect.zw, corner) : vec2(-1.0);

@@ -39,7 +39,7 @@ TEST(VertexArrival, IsLinearAlongATube) {
         wall.emplace_back(4.0F * std::cos(z), 4.0F * std::sin(z), z);
         expected.push_back(static_cast<double>(z) / 50.0);
     }
-    const std::vector<float> arrival = vertex_arrival(graph, network, wall, log);
+    const std::vector<float> arrival = vertex_arrival(graph, network, vertex_feet(graph, wall), log);
     for (std::size_t i = 0; i < wall.size(); ++i) {
         EXPECT_NEAR(static_cast<double>(arrival[i]), expected[i], 2e-7);
     }
@@ -60,7 +60,7 @@ TEST(VertexArrival, NoisyRadiiDoNotMoveTheFoot) {
     for (int i = 10; i <= 290; ++i) {
         wall.emplace_back(5.0F, 0.0F, static_cast<float>(i) / 3.0F);
     }
-    const std::vector<float> arrival = vertex_arrival(graph, network, wall, log);
+    const std::vector<float> arrival = vertex_arrival(graph, network, vertex_feet(graph, wall), log);
     for (std::size_t i = 0; i < wall.size(); ++i) {
         EXPECT_NEAR(static_cast<double>(arrival[i]), static_cast<double>(wall[i].z) / 50.0, 1e-6);
     }
@@ -76,7 +76,7 @@ TEST(VertexArrival, ThinNeighbourDoesNotCaptureTheWideVessel) {
     const FlowNetwork network =
         solve_flow(graph, {.inlets = {{0, 100}}, .outlets = {{10, 0}}, .injection_speed_mm_s = 50}, {}, log);
     const std::vector<glm::vec3> points{{10.0F, 0.0F, 50.0F}, {11.5F, 0.0F, 50.0F}, {12.4F, 0.0F, 50.0F}};
-    const std::vector<float> arrival = vertex_arrival(graph, network, points, log);
+    const std::vector<float> arrival = vertex_arrival(graph, network, vertex_feet(graph, points), log);
     EXPECT_NEAR(static_cast<double>(arrival[0]), 1.0, 1e-6);
     EXPECT_EQ(arrival[1], unreached_s);
     EXPECT_EQ(arrival[2], unreached_s);
@@ -90,12 +90,12 @@ TEST(VertexArrival, BadInputIsUnreached) {
                                         {std::numeric_limits<float>::infinity(), 0, 0}};
     const CentrelineGraph none;
     const FlowNetwork nothing = solve_flow(none, {}, {}, log);
-    for (const float tau : vertex_arrival(none, nothing, points, log)) {
+    for (const float tau : vertex_arrival(none, nothing, vertex_feet(none, points), log)) {
         EXPECT_EQ(tau, unreached_s);
     }
     const CentrelineGraph graph = line_along_z(3, 10.0, 1.0);
     const FlowNetwork network = solve_flow(graph, {.inlets = {{0, 100}}}, {}, log);
-    const std::vector<float> arrival = vertex_arrival(graph, network, points, log);
+    const std::vector<float> arrival = vertex_arrival(graph, network, vertex_feet(graph, points), log);
     EXPECT_EQ(arrival, (std::vector<float>{0.0F, unreached_s, unreached_s}));
     EXPECT_TRUE(vertex_arrival(graph, network, {}, log).empty());
 }
@@ -174,7 +174,7 @@ TEST(VertexArrival, IsFastEnoughToBeDoneAtLoad) {
     Log log;
     const FlowNetwork network = solve_flow(graph, {.inlets = {{0, 100}}}, {}, log);
     const std::clock_t start = std::clock();  // CPU time: other processes do not count
-    const std::vector<float> arrival = vertex_arrival(graph, network, points, log);
+    const std::vector<float> arrival = vertex_arrival(graph, network, vertex_feet(graph, points), log);
     const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
     RecordProperty("seconds", std::to_string(seconds));
     std::printf("100,000 vertices x 1,000 edges: %.0f ms\n", 1e3 * seconds);
