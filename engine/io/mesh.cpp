@@ -24,9 +24,9 @@ struct Format {
 
 constexpr std::array<Format, 6> formats{{{".gltf", read_gltf, 1000.0},
                                          {".glb", read_gltf, 1000.0},
-                                         {".stl", read_with_assimp, 1.0},
-                                         {".obj", read_with_assimp, 1.0},
-                                         {".ply", read_with_assimp, 1.0},
+                                         {".stl", read_stl, 1.0},
+                                         {".obj", read_obj, 1.0},
+                                         {".ply", read_ply, 1.0},
                                          {".vtp", read_vtp_mesh, 1.0}}};
 
 const Format& format_of(const std::filesystem::path& file) {

@@ -22,7 +22,9 @@ struct RawMesh {
 
 // One reader per family of formats. Each throws Error(file) for a damaged file and logs what it leaves out.
 [[nodiscard]] std::vector<RawMesh> read_gltf(const std::filesystem::path& file, Log& log);
-[[nodiscard]] std::vector<RawMesh> read_with_assimp(const std::filesystem::path& file, Log& log);
+[[nodiscard]] std::vector<RawMesh> read_stl(const std::filesystem::path& file, Log& log);
+[[nodiscard]] std::vector<RawMesh> read_obj(const std::filesystem::path& file, Log& log);
+[[nodiscard]] std::vector<RawMesh> read_ply(const std::filesystem::path& file, Log& log);
 [[nodiscard]] std::vector<RawMesh> read_vtp_mesh(const std::filesystem::path& file, Log& log);
 
 /// Scales to mm, drops what cannot be drawn (counted under "mesh: ..."), joins vertices where asked, leaves

@@ -97,7 +97,7 @@ TEST_F(Meshes, PolygonsAreSplit) {
 
 TEST_F(Meshes, ErrorsNameTheFile) {
     EXPECT_THAT(message_of([&] { load("a.fbx", "x"); }), HasSubstr("a.fbx: is no mesh that can be read"));
-    EXPECT_THAT(message_of([&] { load("a.stl", "x"); }), HasSubstr("a.stl: is no readable mesh"));
+    EXPECT_THAT(message_of([&] { load("a.stl", "x"); }), HasSubstr("a.stl: is no readable STL file"));
     EXPECT_THAT(message_of([&] { static_cast<void>(load_meshes(folder_ / "no.stl", {}, log_)); }),
                 HasSubstr("no.stl: cannot be opened"));
     EXPECT_THAT(message_of([&] { load("a.glb", test::tetra_glb(), {.name_filter = "vein"}); }),
