@@ -311,4 +311,19 @@ std::optional<Executor::Output> Executor::output(std::string_view name) const {
     return Output{state.empty ? nullptr : &texture_of(state.holder), &plan_.contents[found->content]};
 }
 
+GLuint Executor::release(std::string_view name) {
+    const auto found = std::ranges::find(plan_.outputs, name, &PlanOutput::target);
+    if (found == plan_.outputs.end() || !ran_) {
+        return 0;
+    }
+    const ContentState& state = schedule_.contents()[found->content];
+    const PlanContent& holder = plan_.contents[state.holder];
+    if (state.empty || holder.imported) {
+        return 0;
+    }
+    const GLuint id = texture_of(state.holder).id();
+    turn_over();  // which may give the texture another place
+    return pool_.release(id);
+}
+
 }  // namespace viscera

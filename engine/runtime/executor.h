@@ -42,6 +42,9 @@ class Executor {
         const PlanContent* content = nullptr;
     };
     [[nodiscard]] std::optional<Output> output(std::string_view name) const;
+    /// Gives away the texture of an output; 0 where it is empty or imported. The frame's other targets are
+    /// then drawn anew, too.
+    [[nodiscard]] GLuint release(std::string_view name);
 
   private:
     class FramePrepare;

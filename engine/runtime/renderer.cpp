@@ -69,14 +69,13 @@ class Renderer::Impl {
         entry_.leave();
     }
 
-    void set_scene(Scene scene) {
+    void set_scene(Scene scene, std::span<const ImportedTarget> imported) {
         SceneEffects effects = make_effects(scene, registry_);
         // Compiled once for its faults, so that a scene that cannot run is refused while the old one still
         // can.
-        if (scene_needs_no_import(scene)) {
-            (void)compile_or_throw(build_graph(scene, effects, {}), scene.width, scene.height,
-                                   capabilities_.max_texture_2d);
-        }
+        (void)compile_or_throw(build_graph(scene, effects, imported), scene.width, scene.height,
+                               capabilities_.max_texture_2d);
+        expected_.assign(imported.begin(), imported.end());
         scene_ = std::move(scene);
         effects_ = std::move(effects);
         planned_ = false;
@@ -90,7 +89,8 @@ class Renderer::Impl {
         Scene changed = scene_;
         ScenePass& target = changed.passes[static_cast<std::size_t>(found - scene_.passes.begin())];
         target.parameters[nlohmann::json::json_pointer(std::string(pointer))] = value;
-        set_scene(std::move(changed));
+        const std::vector<ImportedTarget> imported = expected_;
+        set_scene(std::move(changed), imported);
     }
 
     const FrameReport& render(const Frame& frame) {
@@ -183,15 +183,12 @@ class Renderer::Impl {
     DumpRequest dump_;
     std::vector<std::string> kept_;
     std::vector<std::string> dump_names_;
-    std::vector<ImportedTarget> imported_;
+    std::vector<ImportedTarget> expected_;  ///< as set_scene() was told
+    std::vector<ImportedTarget> imported_;  ///< as the last frame brought
     bool planned_ = false;
     FrameReport report_;
 
   private:
-    bool scene_needs_no_import(const Scene& scene) const {
-        return imported_.empty() && !scene.passes.empty();
-    }
-
     void plan_for(const Frame& frame) {
         const bool same_imports = std::ranges::equal(imported_, frame.imported, same);
         if (planned_ && same_imports && executor_.plan().width == frame.width &&
@@ -255,8 +252,8 @@ Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
-void Renderer::set_scene(Scene scene) {
-    impl_->with_host_state([&] { impl_->set_scene(std::move(scene)); });
+void Renderer::set_scene(Scene scene, std::span<const ImportedTarget> imported) {
+    impl_->with_host_state([&] { impl_->set_scene(std::move(scene), imported); });
 }
 const Scene& Renderer::scene() const {
     return impl_->scene_;
@@ -297,6 +294,9 @@ Image Renderer::read(std::string_view target) {
 }
 unsigned Renderer::texture(std::string_view output) const {
     return impl_->texture(output);
+}
+unsigned Renderer::release_texture(std::string_view output) {
+    return impl_->with_host_state([&] { return impl_->executor_.release(output); });
 }
 const Plan& Renderer::plan() const {
     return impl_->executor_.plan();

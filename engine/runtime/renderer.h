@@ -65,8 +65,9 @@ class Renderer {
     Renderer(Renderer&&) noexcept;
     Renderer& operator=(Renderer&&) noexcept;
 
-    /// Takes a scene; throws Error(scene) that lists every fault and then keeps the scene it had.
-    void set_scene(Scene scene);
+    /// Takes a scene; throws Error(scene) that lists every fault and then keeps the scene it had. `imported`:
+    /// targets that the frames will bring as Frame::imported.
+    void set_scene(Scene scene, std::span<const ImportedTarget> imported = {});
     [[nodiscard]] const Scene& scene() const;
     /// Changes one parameter of a pass: pointer relative to its parameters ("/cloud/radius_mm"). Throws
     /// Error(scene).
@@ -96,6 +97,9 @@ class Renderer {
     /// OpenGL name of the texture that holds an output of the last frame; valid until the next render(). 0:
     /// it is empty.
     [[nodiscard]] unsigned texture(std::string_view output) const;
+    /// Gives the texture of an output of the last frame to the caller, who then deletes it; the next frame
+    /// draws into a new one. 0: the output is empty or an imported texture.
+    [[nodiscard]] unsigned release_texture(std::string_view output);
 
     /// The plan of the last frame's size.
     [[nodiscard]] const Plan& plan() const;

@@ -36,9 +36,14 @@ void TargetPool::reset(const Plan& plan) {
     keys_.assign(textures_.size(), 0);
 }
 
-GLuint TargetPool::release(std::size_t index) {
+GLuint TargetPool::release(GLuint id) {
+    const auto found = std::ranges::find(textures_, id, &gl::Texture::id);
+    if (found == textures_.end()) {
+        return 0;
+    }
+    const auto index = static_cast<std::size_t>(found - textures_.begin());
     framebuffers_.clear();
-    const GLuint id = textures_[index].release();
+    (void)textures_[index].release();
     textures_[index] = make(gl_, descriptions_[index], index);
     keys_[index] = 0;
     return id;

@@ -21,8 +21,9 @@ class TargetPool {
     void reset(const Plan& plan);
 
     [[nodiscard]] const gl::Texture& texture(std::size_t index) const { return textures_[index]; }
-    /// Gives a texture to the caller, who then deletes it; the pool makes a new one in its place.
-    [[nodiscard]] GLuint release(std::size_t index);
+    /// Gives the texture of this OpenGL name to the caller, who then deletes it; the pool makes a new one in
+    /// its place. 0: not ours.
+    [[nodiscard]] GLuint release(GLuint id);
     /// Content keys, by texture; 0: nothing.
     [[nodiscard]] std::span<std::uint64_t> keys() { return keys_; }
     /// Exchanges two textures with what they hold: how a history target turns over.
