@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -93,6 +94,64 @@ TEST_F(Meshes, PolygonsAreSplit) {
     EXPECT_EQ(mesh.triangle_count(), 2U);
     EXPECT_EQ(mesh.positions.size(), 4U);
     EXPECT_EQ(mesh.normals[0], glm::vec3(0.0F, 0.0F, 1.0F));
+}
+
+TEST_F(Meshes, ObjCornersGroupsAndBackwardIndices) {
+    const std::string text =
+        "v 0 0 0\r\nv 1 0 0\r\nv 0 1 0\r\nvt 0 0\nvt 1 0\nvt 0 1\nvn 0 0 2\n"
+        "g first\nf 1/1/1 2/2/1 \\\n3/3/1\ng second\nf -3 -2 -1\nf 1 2 9\nl 1 2\n";
+    const std::vector<MeshData> meshes = load("a.obj", text);
+    ASSERT_EQ(meshes.size(), 2U);
+    EXPECT_EQ(meshes[0].name, "first");
+    EXPECT_EQ(meshes[0].uvs[2], glm::vec2(0.0F, 1.0F));
+    EXPECT_EQ(meshes[0].normals[0], glm::vec3(0.0F, 0.0F, 1.0F));
+    EXPECT_EQ(meshes[1].name, "second");
+    EXPECT_EQ(meshes[1].triangle_count(), 1U);
+    EXPECT_TRUE(meshes[1].uvs.empty());
+    EXPECT_EQ(log_.faults().at("mesh: triangles with an index out of range dropped"), 1U);
+    EXPECT_EQ(log_.faults().at("mesh: points and lines left out"), 1U);
+}
+
+TEST_F(Meshes, PlyReadsBigEndianNormalsAndFurtherProperties) {
+    std::string bytes =
+        "ply\nformat binary_big_endian 1.0\ncomment made by hand\nelement vertex 3\nproperty double "
+        "x\nproperty "
+        "double y\nproperty double z\nproperty float nx\nproperty float ny\nproperty float nz\nproperty "
+        "short "
+        "quality\nelement face 1\nproperty list uchar uint vertex_index\nend_header\n";
+    const auto append = [&](auto value) {
+        std::string raw = test::bytes_of(value);
+        std::ranges::reverse(raw);
+        bytes += raw;
+    };
+    for (int v = 0; v < 3; ++v) {
+        append(v == 1 ? 1.0 : 0.0);
+        append(v == 2 ? 1.0 : 0.0);
+        append(0.5);
+        append(0.0F);
+        append(0.0F);
+        append(-1.0F);
+        append(static_cast<std::int16_t>(-v));
+    }
+    append(std::uint8_t{3});
+    for (const std::uint32_t index : {0U, 1U, 2U}) {
+        append(index);
+    }
+    const MeshData mesh = load("a.ply", bytes).at(0);
+    EXPECT_EQ(mesh.positions[2], glm::vec3(0.0F, 1.0F, 0.5F));
+    EXPECT_EQ(mesh.normals[0], glm::vec3(0.0F, 0.0F, -1.0F));
+    ASSERT_EQ(mesh.scalars.size(), 1U);
+    EXPECT_EQ(mesh.scalars[0].name, "quality");
+    EXPECT_EQ(mesh.scalars[0].values, (std::vector<float>{0.0F, -1.0F, -2.0F}));
+}
+
+TEST_F(Meshes, AHeaderThatPromisesTooMuchIsRefused) {
+    std::string ply = test::tetra_ply_binary();
+    ply.replace(ply.find("vertex 4"), 8, "vertex 4000000000");
+    EXPECT_THAT(message_of([&] { load("a.ply", ply); }), HasSubstr("promises more vertices than it holds"));
+    std::string stl = test::tetra_stl();
+    stl[80] = 5;
+    EXPECT_THAT(message_of([&] { load("a.stl", stl); }), HasSubstr("nor of the size that its header says"));
 }
 
 TEST_F(Meshes, ErrorsNameTheFile) {
