@@ -24,6 +24,7 @@ struct RenderArguments {
     std::optional<double> time_s;
     std::string frames;
     std::string dump = "outputs";
+    std::string png;
     std::string compression = "zip";
     bool multipart = false;
     std::filesystem::path report;
@@ -60,6 +61,15 @@ FrameRange parse_frames(const std::string& text) {
     return range;
 }
 
+std::vector<std::string> split(const std::string& text) {
+    std::vector<std::string> names;
+    std::istringstream stream(text);
+    for (std::string name; std::getline(stream, name, ',');) {
+        names.push_back(name);
+    }
+    return names;
+}
+
 DumpRequest parse_dump(const std::string& text) {
     if (text == "outputs") {
         return {DumpRequest::Kind::outputs, {}};
@@ -67,12 +77,7 @@ DumpRequest parse_dump(const std::string& text) {
     if (text == "all") {
         return {DumpRequest::Kind::all, {}};
     }
-    DumpRequest request{DumpRequest::Kind::names, {}};
-    std::istringstream stream(text);
-    for (std::string name; std::getline(stream, name, ',');) {
-        request.names.push_back(name);
-    }
-    return request;
+    return {DumpRequest::Kind::names, split(text)};
 }
 
 io::ExrCompression parse_compression(const std::string& text) {
@@ -141,12 +146,14 @@ int render(const RenderArguments& arguments) {
     document["scene"] = renderer.scene().file.string();
     document["scene_hash"] = renderer.scene().hash;
     nlohmann::json& frames = document["frames"] = nlohmann::json::array();
+    std::vector<std::string> png = split(arguments.png);
+    png.insert(png.end(), renderer.scene().outputs.begin(), renderer.scene().outputs.end());
     std::mutex mutex;
     const std::uint64_t total = range.end - range.first;
     FrameWriter writer({.folder = arguments.folder,
                         .compression = compression,
                         .multipart = arguments.multipart,
-                        .png = renderer.scene().outputs,
+                        .png = std::move(png),
                         .attributes = header(renderer.scene(), context->info())},
                        [&](FrameReport&& report) {
                            const std::scoped_lock lock(mutex);
@@ -194,6 +201,8 @@ void add_render(CLI::App& app, int& exit_code) {
     command->add_option("--frames", arguments->frames,
                         "A:B renders frames A to B-1 at frame / frames_per_second; A renders one");
     command->add_option("--dump", arguments->dump, "outputs, all, or target names with commas between");
+    command->add_option("--png", arguments->png,
+                        "dumped targets also written as PNG, besides the outputs; names with commas between");
     command->add_option("--exr-compression", arguments->compression, "none, zips, zip, piz or dwaa");
     command->add_flag("--exr-multipart", arguments->multipart, "one file per frame with a part per target");
     command->add_option("--report", arguments->report, "writes what every pass and target did, as JSON");

@@ -1,0 +1,33 @@
+#!/usr/bin/env bash
+# Makes docs/gallery.md and its pictures: docs/make_gallery.sh [PATH OF viscera]
+set -euo pipefail
+cd "$(dirname "$0")/.."
+viscera=${1:-build/release/samples/viscera}
+out=$(mktemp -d)
+trap 'rm -rf "$out"' EXIT
+page=docs/gallery.md
+printf '# Gallery\n\nMade by `docs/make_gallery.sh`; under each picture the command that gives it.\n' >$page
+
+# name, target, caption, arguments
+picture() {
+    local name=$1 target=$2 caption=$3
+    shift 3
+    "$viscera" render "$@" --resolution 640x640 -o "$out" --dump "$target" --png "$target" >/dev/null 2>"$out/log" || { cat "$out/log" >&2; exit 1; }
+    mv "$out/0000.$target.png" "docs/images/$name.png"
+    {
+        printf '\n## %s\n\n![%s](images/%s.png)\n\n```sh\nviscera render' "$caption" "$caption" "$name"
+        printf ' %q' "$@" --resolution 640x640 --dump "$target" --png "$target"
+        printf '\n```\n'
+    } >>$page
+}
+
+scene=assets/scenes/angiography.json
+picture angiography final 'Left coronary artery, RAO 30 caudal 20' $scene
+picture filling final 'Filling' $scene --time 0.75
+picture washout final 'Wash-out: contrast has left the main stem, the muscle blushes' $scene --time 3.35
+picture main contrast.main 'The vessels alone: `contrast.main`' $scene
+picture distance contrast.distance_view 'Distance map at the injection' $scene --set '/passes/-={"name":"look","effect":"contrast.distance_view"}'
+picture reflux contrast.reflux 'Smoke that flows back into the aortic root: `contrast.reflux`' $scene
+picture lao final 'Another C-arm position, AP' $scene --set /camera/primary_deg=0 --set /camera/secondary_deg=0 --set /passes/0/parameters/file=../images/thorax.exr
+picture thesis final 'The published tone curve, which jumps at half density' $scene --time 1.0 --set /passes/8/parameters/tone=thesis
+picture vessels final 'A bifurcation, from the scene for vessels of your own' assets/scenes/vessels.json
