@@ -48,8 +48,6 @@ void generate_sprites(const std::filesystem::path& folder, std::uint64_t seed) {
     for (const SmokeView& view : smoke_views) {
         write_exr(smoke.project(view, size), folder / "sprites" / (std::string(view.name) + ".exr"));
     }
-    write_exr(smoke_mask(0.012, size), folder / "sprites" / "mask_sharp.exr");
-    write_exr(smoke_mask(0.22, size), folder / "sprites" / "mask_blurred.exr");
 }
 
 void generate_images(const std::filesystem::path& folder, std::uint64_t seed) {

@@ -140,21 +140,4 @@ GrayImage Smoke::project(const SmokeView& view, int size) const {
     return image;
 }
 
-GrayImage smoke_mask(double softness, int size) {
-    GrayImage image(size, size);
-    for (int y = 0; y < size; ++y) {
-        for (int x = 0; x < size; ++x) {
-            const glm::dvec2 uv = pixel_uv(x, y, size);
-            // An egg that rests on the wall, which is a shallow arc around the base.
-            const glm::dvec2 egg = (uv - glm::dvec2(0.52, 0.5)) / glm::dvec2(0.43, 0.44);
-            const double inside_egg = (1.0 - glm::length(egg)) * 0.43;
-            const double above_wall = uv.y - (0.13 - 0.35 * (uv.x - 0.55) * (uv.x - 0.55));
-            const double inside = std::min(inside_egg, above_wall);
-            image.at(x, y) = static_cast<float>(smoothstep(-0.5 * softness, 0.5 * softness, inside) *
-                                                border_window(uv.x, uv.y, 0.04));
-        }
-    }
-    return image;
-}
-
 }  // namespace viscera::assets

@@ -45,8 +45,4 @@ class Smoke {
     std::vector<float> density_;
 };
 
-/// Silhouette in the side view's UV where smoke may show: free above the vessel's wall, closed below it and
-/// towards the border. softness is the width of the edge in UV, > 0; exactly 0 along the border.
-[[nodiscard]] GrayImage smoke_mask(double softness, int size);
-
 }  // namespace viscera::assets

@@ -49,8 +49,6 @@ TEST(Smoke, sprites_stay_in_range_and_end_at_zero) {
     for (const SmokeView& view : smoke_views) {
         expect_sprite(smoke().project(view, size), std::string(view.name));
     }
-    expect_sprite(smoke_mask(0.012, size), "mask_sharp");
-    expect_sprite(smoke_mask(0.22, size), "mask_blurred");
 }
 
 TEST(Smoke, side_view_starts_at_its_base_and_widens_upwards) {
@@ -81,19 +79,6 @@ TEST(Smoke, neighbouring_views_show_the_same_plume) {
     const GrayImage side = smoke().project(smoke_views[0], size);
     const GrayImage front = smoke().project(smoke_views[4], size);
     EXPECT_LT(distance(side, smoke().project(smoke_views[1], size)), 0.5 * distance(side, front));
-}
-
-TEST(Smoke, masks_let_the_side_view_through_and_close_below_the_wall) {
-    const GrayImage side = smoke().project(smoke_views[0], size);
-    const GrayImage sharp = smoke_mask(0.012, size);
-    double through = 0.0;
-    double whole = 0.0;
-    for (std::size_t i = 0; i < side.pixels.size(); ++i) {
-        through += static_cast<double>(side.pixels[i] * sharp.pixels[i]);
-        whole += static_cast<double>(side.pixels[i]);
-    }
-    EXPECT_GT(through, 0.95 * whole);
-    EXPECT_EQ(mean(sharp, 0, size - 1 - size / 10, size, size), 0.0);
 }
 
 TEST(Rays, chords_match_closed_forms) {
