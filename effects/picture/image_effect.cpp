@@ -11,7 +11,7 @@
 namespace viscera::picture {
 namespace {
 
-constexpr std::array<std::string_view, 2> fit_names{"cover", "stretch"};
+constexpr std::array<std::string_view, 3> fit_names{"cover", "stretch", "height"};
 
 /// Nothing that is not finite may reach a target: such texels count as black, and are counted.
 Image finite(const Image& image, Log& log, const std::string& file) {
@@ -41,7 +41,10 @@ std::span<const std::string_view> choice_names(Fit) {
 
 void ImageParams::visit(ParamVisitor& v) {
     v.field({.name = "file", .doc = "PNG, JPEG or EXR; values are taken as stored.", .required = true}, file);
-    v.field({.name = "fit", .doc = "cover cuts off what does not fit; stretch gives up the shape."}, fit);
+    v.field({.name = "fit",
+             .doc = "cover cuts off what does not fit; stretch gives up the shape; height is as high as the "
+                    "target and black beside."},
+            fit);
     v.field({.name = "gain", .doc = "Factor on the values.", .min = 0.0}, gain);
     v.field({.name = "monochrome", .doc = "One channel, the file's first; otherwise four."}, monochrome);
 }
@@ -72,10 +75,11 @@ void ImageEffect::draw(const Pass& pass) {
                 gl::Texture::from_image(pass.gl(), finite(*image, pass.log(), file), file));
         });
     glm::dvec2 scale(1.0);
-    if (params_.fit == Fit::cover) {
+    if (params_.fit != Fit::stretch) {
         const double ratio = (static_cast<double>(pass.size().x) / pass.size().y) /
                              (static_cast<double>(texture.width()) / texture.height());
-        scale = {std::min(1.0, ratio), std::min(1.0, 1.0 / ratio)};
+        scale = params_.fit == Fit::height ? glm::dvec2(ratio, 1.0)
+                                           : glm::dvec2(std::min(1.0, ratio), std::min(1.0, 1.0 / ratio));
     }
     const gl::Program& program = pass.use(params_.monochrome ? 1 : 0);
     pass.bind(program, "u_image", texture);

@@ -10,6 +10,7 @@ namespace viscera::picture {
 enum class Fit {
     cover,    ///< fills the target, the rest is cut off
     stretch,  ///< fills the target, shape is lost
+    height,  ///< as high as the target and black beside it: stays under a camera that holds a vertical extent
 };
 [[nodiscard]] std::span<const std::string_view> choice_names(Fit fit);
 

@@ -12,7 +12,9 @@ layout(location = 0) out vec4 o_color;
 #endif
 
 void main() {
-    vec4 texel = textureLod(u_image, v_uv * u_scale + u_offset, 0.0);
+    vec2 uv = v_uv * u_scale + u_offset;
+    bool inside = all(greaterThanEqual(uv, vec2(0.0))) && all(lessThanEqual(uv, vec2(1.0)));
+    vec4 texel = inside ? textureLod(u_image, uv, 0.0) : vec4(0.0, 0.0, 0.0, 1.0);
 #ifdef MONOCHROME
     o_color = u_gain * texel.r;
 #else

@@ -20,6 +20,7 @@ right drag, wheel   zoom
 keypad 1, 3, 7      front, left, head
 space               stop and go on in time
 left, right         one frame back, on
+T                   time back to the scene's beginning
 Tab                 next target
 S, E                save the target as PNG, as EXR
 R                   reset the camera
@@ -140,6 +141,9 @@ class Viewer {
                 return;
             case ' ':
                 running_ = !running_;
+                return;
+            case 'T':
+                time_s_ = 0.0;
                 return;
             case 'R':
                 camera_ = renderer_.scene().camera;
