@@ -40,7 +40,10 @@ void find_arrival(Vessel& vessel, const VesselParams& params, Log& log) {
 }
 
 std::vector<float> density(const Vessel& vessel, const VesselParams& params, Log& log) {
-    const auto found = std::ranges::find(vessel.mesh.scalars, params.scalar, &VertexScalars::name);
+    // glTF puts an underscore before the names of attributes of one's own.
+    const auto found = std::ranges::find_if(vessel.mesh.scalars, [&](const VertexScalars& scalars) {
+        return scalars.name == params.scalar || scalars.name == "_" + params.scalar;
+    });
     if (found == vessel.mesh.scalars.end()) {
         return std::vector<float>(vessel.mesh.positions.size(),
                                   0.0F);  // the host gives it, or there is none yet
