@@ -44,17 +44,22 @@ double blend_views(const std::vector<SpriteView>& views, double angle_deg, glm::
 
 void draw_sprite(const Emitter& emitter, const Sprites& pictures, const SpriteCamera& camera,
                  const Buffer& summary, Buffer& target) {
-    const auto base = project(camera.view_projection, emitter.base_mm);
-    const auto tip = project(camera.view_projection, emitter.tip_mm);
-    const auto edge = project(camera.view_projection, emitter.edge_mm);
-    if (!base || !tip || !edge || !(emitter.size > 0.0)) {
+    const auto base_uv = project(camera.view_projection, emitter.base_mm);
+    const auto tip_uv = project(camera.view_projection, emitter.tip_mm);
+    const auto edge_uv = project(camera.view_projection, emitter.edge_mm);
+    if (!base_uv || !tip_uv || !edge_uv || !(emitter.size > 0.0)) {
         return;
     }
-    const double length = glm::length(*tip - *base);
+    // Lengths in target heights, so that a sprite keeps its shape on a target that is not square.
+    const glm::dvec2 aspect(static_cast<double>(target.width) / target.height, 1.0);
+    const glm::dvec2 base = *base_uv * aspect;
+    const glm::dvec2 tip = *tip_uv * aspect;
+    const glm::dvec2 edge = *edge_uv * aspect;
+    const double length = glm::length(tip - base);
     if (!(length > 0.0)) {
         return;
     }
-    const glm::dvec2 up = (*tip - *base) / length;
+    const glm::dvec2 up = (tip - base) / length;
     const glm::dvec2 right(up.y, -up.x);
     const glm::dvec3 axis = glm::normalize(emitter.tip_mm - emitter.base_mm);
     const glm::dvec3 sight = camera.orthographic ? glm::normalize(camera.forward)
@@ -62,18 +67,19 @@ void draw_sprite(const Emitter& emitter, const Sprites& pictures, const SpriteCa
     const double k = std::min(1.0, std::abs(glm::dot(axis, sight)));
     const double angle_deg = std::acos(k) * 180.0 / std::numbers::pi;
     const double front_weight = clamp01(4.0 * k - 3.0);
-    const double front_size = 5.5 * glm::length(*tip - *edge);
-    const double brightness = sprite_brightness(summary, *base);
+    const double front_size = 5.5 * glm::length(tip - edge);
+    const double brightness = emitter.strength * sprite_brightness(summary, *base_uv);
     for (int y = 0; y < target.height; ++y) {
         for (int x = 0; x < target.width; ++x) {
             const glm::dvec2 uv = target.uv(x, y);
-            const glm::dvec2 d = uv - *base;
+            const glm::dvec2 place = uv * aspect;
+            const glm::dvec2 d = place - base;
             const glm::dvec2 side_uv =
                 glm::dvec2(glm::dot(right, d), glm::dot(up, d)) / (emitter.size * length) +
                 glm::dvec2(0.55, 0.15);
             double smoke = blend_views(pictures.views, angle_deg, side_uv);
             if (front_weight > 0.0 && front_size > 0.0) {
-                smoke += 1.1 * front_weight * sample_inside(pictures.front, (uv - *tip) / front_size + 0.5);
+                smoke += 1.1 * front_weight * sample_inside(pictures.front, (place - tip) / front_size + 0.5);
             }
             const double sharp = pictures.mask_sharp.empty() ? 1.0 : sample_linear(pictures.mask_sharp, uv);
             const double blurred =

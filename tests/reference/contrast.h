@@ -65,6 +65,7 @@ struct Emitter {
     glm::dvec3 tip_mm{0.0};
     glm::dvec3 edge_mm{0.0};
     double size = 1.0;
+    double strength = 1.0;  ///< scale of the smoke's density, in [0, 1]
 };
 
 /// What all emitters of one pass share. Views are sorted by angle; between two of them the smoke is their
@@ -87,9 +88,11 @@ struct SpriteCamera {
 /// Largest summary at b and at 4 rings of 4 neighbours (+-x, +-y), 0.01, 0.02, 0.03, 0.04 UV away.
 [[nodiscard]] double sprite_brightness(const Buffer& summary, glm::dvec2 base_uv);
 
-/// Stage 5: all emitters of a pass, combined by max, into a target of the summary's size. The sprite's axis
-/// is its +v. View direction: from the eye to the base. An emitter with base on tip, or with a point behind
-/// the eye or not finite, gives nothing; edge on tip gives no front sprite.
+/// Stage 5: all emitters of a pass, combined by max, into a target of the summary's size. Lengths (L, the
+/// front view's size, the mask's reach) are measured in target heights: UV scaled by (width / height, 1), so
+/// that sprites turn without shear on targets that are not square; on square ones this is UV. The sprite's
+/// axis is its +v. View direction: from the eye to the base. An emitter with base on tip, or with a point
+/// behind the eye or not finite, gives nothing; edge on tip gives no front sprite.
 [[nodiscard]] Buffer sprites(std::span<const Emitter> emitters, const Sprites& pictures,
                              const SpriteCamera& camera, const Buffer& summary);
 

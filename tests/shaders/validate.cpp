@@ -1,0 +1,150 @@
+#include "tests/shaders/validate.h"
+
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+#include <memory>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+
+#include "effects/register_all.h"
+#include "tests/io/temp_folder.h"
+
+namespace viscera::test {
+namespace {
+
+struct Run {
+    std::string output;
+    int status = 0;
+};
+
+Run run(const std::string& command) {
+    const std::unique_ptr<FILE, int (*)(FILE*)> pipe(::popen((command + " 2>&1").c_str(), "r"), ::pclose);
+    if (!pipe) {
+        throw std::runtime_error("cannot run " + command);
+    }
+    Run result;
+    std::array<char, 4096> part{};
+    while (const std::size_t got = std::fread(part.data(), 1, part.size(), pipe.get())) {
+        result.output.append(part.data(), got);
+    }
+    return result;
+}
+
+/// A stage in a file of its own, named so that the validator knows its kind.
+struct StageFile {
+    std::string name;
+    ShaderSource source;
+};
+
+class Stages {
+  public:
+    Stages(const TempFolder& folder, const ShaderReader& reader) : folder_(folder), reader_(reader) {}
+
+    std::string add(const std::string& file, const std::vector<std::string>& defines) {
+        ShaderSource source = expand_shader(file, defines, reader_);
+        const std::string extension = file.substr(file.rfind('.'));
+        const auto [found, is_new] =
+            names_.try_emplace(source.text + extension, "s" + std::to_string(names_.size()) + extension);
+        if (is_new) {
+            (void)folder_.write(found->second, source.text);
+            stages_.push_back({found->second, std::move(source)});
+        }
+        return found->second;
+    }
+    [[nodiscard]] const std::vector<StageFile>& stages() const { return stages_; }
+
+  private:
+    const TempFolder& folder_;
+    const ShaderReader& reader_;
+    std::map<std::string, std::string> names_;  ///< by text and kind
+    std::vector<StageFile> stages_;
+};
+
+/// The validator names each file on a line of its own and then says what is wrong in it.
+void collect_faults(const std::string& output, const std::vector<StageFile>& stages,
+                    std::vector<std::string>& faults) {
+    const StageFile* stage = nullptr;
+    std::istringstream lines(output);
+    for (std::string line; std::getline(lines, line);) {
+        const auto named = std::ranges::find(stages, line, &StageFile::name);
+        if (named != stages.end()) {
+            stage = &*named;
+        } else if (line.starts_with("ERROR") || line.starts_with("WARNING")) {
+            faults.push_back(stage == nullptr ? line : map_shader_log(line, stage->source));
+        }
+    }
+}
+
+}  // namespace
+
+std::optional<std::filesystem::path> find_validator() {
+    const char* path = std::getenv("PATH");
+    std::istringstream folders(path == nullptr ? "" : path);
+    for (std::string folder; std::getline(folders, folder, ':');) {
+        const std::filesystem::path file = std::filesystem::path(folder) / "glslangValidator";
+        if (std::filesystem::exists(file)) {
+            return file;
+        }
+    }
+    return std::nullopt;
+}
+
+std::vector<ProgramDesc> all_programs() {
+    Registry registry;
+    register_all(registry);
+    std::vector<ProgramDesc> programs{{"common/fullscreen.vert", "common/present.frag", {}}};
+    for (const Registry::Entry& entry : registry.entries()) {
+        const std::unique_ptr<Effect> effect = entry.make();
+        const auto own = effect->programs();
+        programs.insert(programs.end(), own.begin(), own.end());
+    }
+    return programs;
+}
+
+Verdict validate(const std::filesystem::path& validator, const std::vector<ProgramDesc>& programs,
+                 const ShaderReader& reader) {
+    const TempFolder folder;
+    Stages stages(folder, reader);
+    std::set<std::pair<std::string, std::string>> pairs;
+    for (const ProgramDesc& program : programs) {
+        const std::string vertex = stages.add(program.vertex, program.defines);
+        const std::string fragment =
+            program.fragment.empty() ? std::string() : stages.add(program.fragment, program.defines);
+        pairs.emplace(vertex, fragment);
+    }
+    Verdict verdict{.faults = {}, .stages = stages.stages().size(), .links = pairs.size()};
+    const std::string enter = "cd '" + folder.path().string() + "' && ";
+    std::string names;
+    for (const StageFile& stage : stages.stages()) {
+        names += " " + stage.name;
+    }
+    collect_faults(run(enter + "'" + validator.string() + "'" + names).output, stages.stages(),
+                   verdict.faults);
+    if (!verdict.faults.empty()) {
+        return verdict;  // what does not compile does not link
+    }
+    // One pair a call, all in one shell.
+    std::string links;
+    for (const auto& [vertex, fragment] : pairs) {
+        links += "echo 'link " + vertex + " " + fragment + "'; '" + validator.string() + "' -l " + vertex +
+                 " " + fragment + "; ";
+    }
+    std::istringstream lines(run(enter + "{ " + links + "}").output);
+    std::string link;
+    for (std::string line; std::getline(lines, line);) {
+        if (line.starts_with("link ")) {
+            link = line;
+        } else if (line.starts_with("ERROR")) {
+            verdict.faults.push_back(link + ": " + line);
+        }
+    }
+    return verdict;
+}
+
+}  // namespace viscera::test
