@@ -1,6 +1,23 @@
 #include "engine/runtime/frame.h"
 
+#include <bit>
+
+#include "engine/core/hash.h"
+
 namespace viscera {
+namespace {
+
+/// Of the content, not a count: two objects, or copies of one, must not give different arrays one version.
+std::uint64_t version_of(std::span<const float> values) {
+    std::uint64_t state = values.size();
+    for (const float value : values) {
+        state = (state ^ std::bit_cast<std::uint32_t>(value)) * 0x9e3779b97f4a7c15ULL;
+        state ^= state >> 32;
+    }
+    return Hash().add(state).value();
+}
+
+}  // namespace
 
 void HostValues::set(std::string_view name, std::span<const float> values) {
     auto found = entries_.find(name);
@@ -8,7 +25,7 @@ void HostValues::set(std::string_view name, std::span<const float> values) {
         found = entries_.emplace(std::string(name), Entry{}).first;
     }
     found->second.values.assign(values.begin(), values.end());
-    found->second.version = next_version_++;
+    found->second.version = version_of(values);
 }
 
 void HostValues::erase(std::string_view name) {

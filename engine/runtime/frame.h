@@ -24,12 +24,12 @@ struct PixelRect {
 };
 
 /// What a host tells effects while frames go by: arrays of floats by name (per-vertex densities, emitters,
-/// contacts). A changed array gets a new version, so that effects know when to redraw.
+/// contacts). A changed array has another version, so that effects know when to redraw.
 class HostValues {
   public:
     struct Entry {
         std::vector<float> values;
-        std::uint64_t version = 0;
+        std::uint64_t version = 0;  ///< hash of the values, never 0
     };
 
     /// Replaces an array. Allocation-free when the size does not grow.
@@ -41,7 +41,6 @@ class HostValues {
 
   private:
     std::map<std::string, Entry, std::less<>> entries_;
-    std::uint64_t next_version_ = 1;
 };
 
 /// A texture of the host that stands for a target of the scene. It is never deleted by viscera.

@@ -1,6 +1,30 @@
 #include "engine/runtime/presenter.h"
 
+#include <string>
+
+#include "engine/core/error.h"
+
 namespace viscera {
+namespace {
+
+/// Throws unless the framebuffer can be drawn into, which a host may get wrong; binds it.
+void bind(const gl::Functions& gl, const Present& present) {
+    const auto refuse = [&](const std::string& why) { throw Error(ErrorCode::usage, "present", why); };
+    const std::string name = "framebuffer " + std::to_string(present.framebuffer);
+    if (present.viewport.width < 0 || present.viewport.height < 0) {
+        refuse("the viewport's size is negative");
+    }
+    if (present.framebuffer != 0 && gl.IsFramebuffer(present.framebuffer) == GL_FALSE) {
+        refuse(name + " does not exist in this context");
+    }
+    gl.BindFramebuffer(GL_FRAMEBUFFER, present.framebuffer);
+    if (gl.CheckFramebufferStatus(GL_DRAW_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
+        refuse(name +
+               (present.framebuffer == 0 ? " does not exist: the context has no surface" : " is incomplete"));
+    }
+}
+
+}  // namespace
 
 Presenter::Presenter(const Pass::Shared& shared)
     : shared_(shared),
@@ -12,7 +36,7 @@ void Presenter::present(const Present& present, const gl::Texture* texture, cons
                             present.viewport.height};
     gl::RasterState state = gl::overwrite_state;
     state.scissor = viewport;  // a clear, too, must not leave the viewport
-    gl.BindFramebuffer(GL_FRAMEBUFFER, present.framebuffer);
+    bind(gl, present);
     gl::apply(gl, state, viewport);
     const bool grey = info(content.format).channels == 1;
     if (texture == nullptr) {

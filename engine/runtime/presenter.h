@@ -10,7 +10,8 @@ class Presenter {
   public:
     explicit Presenter(const Pass::Shared& shared);
 
-    /// texture: null where the target holds nothing but its clear value.
+    /// texture: null where the target holds nothing but its clear value. Throws Error(usage) for a
+    /// framebuffer that cannot be drawn into.
     void present(const Present& present, const gl::Texture* texture, const PlanContent& content);
 
   private:
