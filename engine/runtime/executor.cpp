@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/core/error.h"
+#include "engine/core/hash.h"
 #include "engine/gl/debug.h"
 
 namespace viscera {
@@ -128,10 +129,21 @@ void Executor::import(const Frame& frame) {
     imported_keys_.clear();
     for (const ImportedTarget& target : imported_) {
         const auto found = std::ranges::find(frame.imported, target.name, &ImportedTexture::target);
+        if (found->texture == 0 || shared_.gl.IsTexture(found->texture) == GL_FALSE) {
+            throw Error(ErrorCode::usage, target.name,
+                        "the imported texture " + std::to_string(found->texture) +
+                            " does not exist in this context");
+        }
+        // A host may have deleted a texture and made another of the same name, which no framebuffer made
+        // before then holds.
+        if (target.writable) {
+            pool_.forget_framebuffers(found->texture);
+        }
         imported_textures_.push_back(gl::Texture::wrap(shared_.gl, found->texture, GL_TEXTURE_2D,
                                                        {found->width, found->height},
                                                        gl::texture_format(found->format)));
-        imported_keys_.push_back(found->version);
+        imported_keys_.push_back(
+            found->version == 0 ? 0 : Hash().add(found->texture).add(found->version).value());
     }
 }
 

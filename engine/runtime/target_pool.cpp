@@ -69,4 +69,10 @@ const gl::Framebuffer& TargetPool::framebuffer(std::span<const gl::Texture* cons
     return *framebuffers_.back().framebuffer;
 }
 
+void TargetPool::forget_framebuffers(GLuint texture) {
+    std::erase_if(framebuffers_, [&](const Entry& entry) {
+        return std::ranges::find(entry.ids, texture) != entry.ids.end();
+    });
+}
+
 }  // namespace viscera

@@ -32,6 +32,8 @@ class TargetPool {
     /// Framebuffer of some colours (null entries discard their output) and a depth; made once.
     [[nodiscard]] const gl::Framebuffer& framebuffer(std::span<const gl::Texture* const> colours,
                                                      const gl::Texture* depth, std::string_view label);
+    /// Drops the framebuffers that hold a texture.
+    void forget_framebuffers(GLuint texture);
 
   private:
     static constexpr std::size_t attachments = gl::draw_buffers + 1;
