@@ -70,7 +70,7 @@ class Executor::FramePrepare final : public Prepare {
 };
 
 Executor::Executor(const Pass::Shared& shared, const gl::Capabilities& capabilities, Options options)
-    : shared_(shared), capabilities_(capabilities), options_(options), pool_(shared.gl) {}
+    : shared_(shared), capabilities_(capabilities), options_(std::move(options)), pool_(shared.gl) {}
 
 void Executor::set_plan(Plan plan, std::vector<ImportedTarget> imported, SceneEffects& effects) {
     ran_ = false;
@@ -214,6 +214,7 @@ void Executor::draw(const Frame& frame, std::size_t p) {
     const PixelRect all{0, 0, size.x, size.y};
     const PixelRect region = whole ? all : confine(state.work.region, size);
 
+    observe(pass.name, true);
     if (state.timer) {
         state.timer->begin();
     }
@@ -226,7 +227,14 @@ void Executor::draw(const Frame& frame, std::size_t p) {
     if (state.timer) {
         state.timer->end();
     }
+    observe(pass.name, false);
     check(pass.name);
+}
+
+void Executor::observe(std::string_view pass, bool begins) const {
+    if (options_.observer) {
+        options_.observer(pass, begins);
+    }
 }
 
 void Executor::clear(const PassState& state, const PlanPass& pass, const gl::Framebuffer& target) const {

@@ -22,6 +22,7 @@ class Executor {
     struct Options {
         bool timers = true;
         bool check_errors = true;
+        PassObserver observer;
     };
 
     Executor(const Pass::Shared& shared, const gl::Capabilities& capabilities, Options options);
@@ -29,8 +30,12 @@ class Executor {
     /// Takes a compiled graph and its effects, which must outlive it. Targets of the same size are kept,
     /// their content is not.
     void set_plan(Plan plan, std::vector<ImportedTarget> imported, SceneEffects& effects);
-    /// The key of an effect's parameters has changed.
-    void set_parameters_key(std::size_t pass, std::uint64_t key) { passes_[pass].parameters_key = key; }
+    /// Takes another effect of the same kind and ports for a pass: its parameters have changed. All that is
+    /// held stays.
+    void replace_effect(std::size_t pass, Effect& effect, std::uint64_t parameters_key) {
+        passes_[pass].effect = &effect;
+        passes_[pass].parameters_key = parameters_key;
+    }
 
     /// Draws one frame and fills the report's passes. On an exception nothing counts as held any more.
     void run(const Frame& frame, FrameReport& report);
@@ -66,6 +71,7 @@ class Executor {
     void turn_over();
     void import(const Frame& frame);
     void check(std::string_view pass) const;
+    void observe(std::string_view pass, bool begins) const;
     [[nodiscard]] const gl::Texture& texture_of(std::size_t content) const;
     void clear(const PassState& state, const PlanPass& pass, const gl::Framebuffer& target) const;
 

@@ -32,6 +32,14 @@ bool same(const ImportedTarget& a, const ImportedTexture& b) {
            a.writable == b.writable;
 }
 
+/// Whether two effects take the same place in a graph.
+bool same(const Port& a, const Port& b) {
+    return a.name == b.name && a.access == b.access && a.target == b.target && a.format == b.format &&
+           a.size.scale == b.size.scale && a.size.width == b.size.width && a.size.height == b.size.height &&
+           a.clear == b.clear && a.optional == b.optional && a.passthrough == b.passthrough &&
+           a.overwrites == b.overwrites;
+}
+
 ContextInfo describe(const gl::Capabilities& capabilities) {
     ContextInfo info;
     info.vendor = capabilities.vendor;
@@ -63,7 +71,10 @@ class Renderer::Impl {
           black_(make_black(*gl_)),
           no_vertices_(*gl_),
           shared_{*gl_, shaders_, samplers_, black_, no_vertices_, assets_, log_},
-          executor_(shared_, capabilities_, {.timers = options.timers, .check_errors = options.check_errors}),
+          executor_(shared_, capabilities_,
+                    {.timers = options.timers,
+                     .check_errors = options.check_errors,
+                     .observer = std::move(options.observer)}),
           presenter_(shared_),
           capture_(*gl_) {
         entry_.leave();
@@ -73,11 +84,12 @@ class Renderer::Impl {
         SceneEffects effects = make_effects(scene, registry_);
         // Compiled once for its faults, so that a scene that cannot run is refused while the old one still
         // can.
-        (void)compile_or_throw(build_graph(scene, effects, imported), scene.width, scene.height,
-                               capabilities_.max_texture_2d);
+        (void)compile_scene(scene, build_graph(scene, effects, imported), scene.width, scene.height,
+                            capabilities_.max_texture_2d);
         expected_.assign(imported.begin(), imported.end());
         scene_ = std::move(scene);
         effects_ = std::move(effects);
+        assets_.begin_scene();
         planned_ = false;
     }
 
@@ -87,16 +99,36 @@ class Renderer::Impl {
             throw Error(ErrorCode::scene, std::string(pass), "the scene has no pass of this name");
         }
         Scene changed = scene_;
-        ScenePass& target = changed.passes[static_cast<std::size_t>(found - scene_.passes.begin())];
-        target.parameters[nlohmann::json::json_pointer(std::string(pointer))] = value;
-        const std::vector<ImportedTarget> imported = expected_;
-        set_scene(std::move(changed), imported);
+        const auto index = static_cast<std::size_t>(found - scene_.passes.begin());
+        ScenePass& target = changed.passes[index];
+        try {
+            target.parameters[nlohmann::json::json_pointer(std::string(pointer))] = value;
+        } catch (const nlohmann::json::exception&) {
+            throw Error(ErrorCode::scene, std::string(pass),
+                        "'" + std::string(pointer) + "' leads to no parameter");
+        }
+        SceneEffects effects = make_effects(changed, registry_);
+        const auto same_port = [](const Port& a, const Port& b) { return same(a, b); };
+        if (!planned_ || !std::ranges::equal(effects.effects[index]->ports(),
+                                             effects_.effects[index]->ports(), same_port)) {
+            const std::vector<ImportedTarget> imported = expected_;
+            set_scene(std::move(changed), imported);
+            return;
+        }
+        // The graph is the same, so what other passes have drawn stays.
+        executor_.replace_effect(index, *effects.effects[index], effects.parameter_keys[index]);
+        std::swap(effects_.effects[index], effects.effects[index]);
+        effects_.parameter_keys[index] = effects.parameter_keys[index];
+        scene_ = std::move(changed);
     }
 
     const FrameReport& render(const Frame& frame) {
         const gl::CpuTimer timer;
         if (frame.width < 1 || frame.height < 1) {
             throw Error(ErrorCode::usage, "frame", "needs a width and a height of at least 1 pixel");
+        }
+        if (scene_.passes.empty()) {
+            throw Error(ErrorCode::usage, "frame", "there is no scene to render");
         }
         std::optional<gl::HostStateScope> scope;
         if (frame.host_state == HostStatePolicy::restore) {
@@ -121,6 +153,11 @@ class Renderer::Impl {
             capture_.start(report_, dump_names_, executor_);
         }
         return report_;
+    }
+
+    int reload(ShaderReader reader) {
+        planned_ = false;  // what the old programs drew is not what the new ones would draw
+        return shaders_.reload(std::move(reader));
     }
 
     void set_dump(DumpRequest request, CaptureSink sink) {
@@ -195,14 +232,15 @@ class Renderer::Impl {
             executor_.plan().height == frame.height) {
             return;
         }
+        planned_ = false;  // until all of the below has worked
         imported_.clear();
         for (const ImportedTexture& texture : frame.imported) {
             imported_.push_back(
                 {texture.target, texture.format, texture.width, texture.height, texture.writable});
         }
         const auto compile_with = [&](const std::vector<std::string>& more) {
-            return compile_or_throw(build_graph(scene_, effects_, imported_, more), frame.width, frame.height,
-                                    capabilities_.max_texture_2d);
+            return compile_scene(scene_, build_graph(scene_, effects_, imported_, more), frame.width,
+                                 frame.height, capabilities_.max_texture_2d);
         };
         dump_names_.clear();
         switch (dump_.kind) {
@@ -302,8 +340,7 @@ const Plan& Renderer::plan() const {
     return impl_->executor_.plan();
 }
 int Renderer::reload_shaders(const std::filesystem::path& glsl_folder) {
-    return impl_->with_host_state(
-        [&] { return impl_->shaders_.reload(shader_reader_from_folder(glsl_folder)); });
+    return impl_->with_host_state([&] { return impl_->reload(shader_reader_from_folder(glsl_folder)); });
 }
 Log& Renderer::log() {
     return impl_->log_;

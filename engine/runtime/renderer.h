@@ -29,6 +29,8 @@ struct RendererOptions {
     /// Ask for glGetError after each pass and throw what it says. KHR_debug messages go to the log in any
     /// case.
     bool check_errors = true;
+    /// Called around each pass that draws, its clears included: for measuring.
+    PassObserver observer;
 };
 
 /// One target of a frame, read back.
@@ -108,7 +110,7 @@ class Renderer {
     int reload_shaders(const std::filesystem::path& glsl_folder);
     [[nodiscard]] Log& log();
     [[nodiscard]] const ContextInfo& context_info() const;
-    /// Files read and objects made so far.
+    /// Files read and objects made that are held at present.
     [[nodiscard]] std::size_t asset_count() const;
 
   private:

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <nlohmann/json_fwd.hpp>
@@ -35,6 +37,10 @@ struct TargetReport {
     std::uint64_t nan = 0;
     std::uint64_t inf = 0;
 };
+
+/// Told when a pass begins and when all its commands have been given. It may wait for them (glFinish), which
+/// is how passes are measured on software renderers, but must change no other state.
+using PassObserver = std::function<void(std::string_view pass, bool begins)>;
 
 struct FrameReport {
     std::uint64_t index = 0;

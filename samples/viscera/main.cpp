@@ -12,9 +12,9 @@ int run(int argc, char** argv) {
     app.require_subcommand(1);
     app.set_version_flag("--version", VISCERA_VERSION);
     int exit_code = EXIT_SUCCESS;
-    for (const auto add :
-         {viscera::app::add_render, viscera::app::add_view, viscera::app::add_check, viscera::app::add_diff,
-          viscera::app::add_info, viscera::app::add_backends, viscera::app::add_schema}) {
+    for (const auto add : {viscera::app::add_render, viscera::app::add_view, viscera::app::add_check,
+                           viscera::app::add_diff, viscera::app::add_info, viscera::app::add_bench,
+                           viscera::app::add_backends, viscera::app::add_schema}) {
         add(app, exit_code);
     }
     try {

@@ -1,0 +1,29 @@
+#include "samples/viscera/bench/cases.h"
+
+#include <array>
+
+namespace viscera::app {
+
+std::span<const Case> all_cases() {
+    static constexpr std::array<Case, 16> cases{{
+        {"ceilings", "copy and clear per format, fetches, exp, vertices, triangles", run_ceilings},
+        {"readback", "read-back per format, waiting and not waiting", run_read_back},
+        {"geometry", "one pass over the vessels against three", run_geometry},
+        {"overlap", "densest fragment by max, depth and painter", run_overlap},
+        {"summarize", "against a copy of the same bytes", run_summarize},
+        {"composite", "by layers and tone, against a copy of the same bytes", run_composite},
+        {"gaussian", "by sigma, against as many plain fetches", run_gaussian},
+        {"sprites", "cost by a sprite's own area", run_sprites},
+        {"chain", "the default scene pass by pass", run_chain},
+        {"cached", "a frame in which nothing changes", run_cached},
+        {"region", "vessels that cover part of the picture", run_region},
+        {"cpu", "time on the calling thread", run_cpu},
+        {"precision", "half targets against float targets", run_precision},
+        {"opacity", "the opacity curve in closed form against its 25 terms", run_opacity},
+        {"density", "arrival time against densities uploaded each frame", run_density},
+        {"resolution", "the default scene by size", run_resolution},
+    }};
+    return cases;
+}
+
+}  // namespace viscera::app
