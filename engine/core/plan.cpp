@@ -1,5 +1,7 @@
 #include "engine/core/plan.h"
 
+#include <algorithm>
+
 #include "engine/core/error.h"
 #include "engine/core/plan_resolve.h"
 #include "engine/core/plan_textures.h"
@@ -177,7 +179,8 @@ Plan compile_or_throw(const Graph& graph, int width, int height, int max_size) {
     for (const Fault& fault : result.faults) {
         text += (text.empty() ? "" : "\n") + to_string(fault);
     }
-    throw Error(ErrorCode::scene, "graph", text);
+    const bool limit = std::ranges::all_of(result.faults, &Fault::limit);
+    throw Error(limit ? ErrorCode::limit : ErrorCode::scene, "graph", text);
 }
 
 }  // namespace viscera

@@ -16,6 +16,7 @@ struct Fault {
     std::string port;
     std::string target;
     std::string message;
+    bool limit = false;  ///< nothing is wrong but the size, which the device cannot take
 };
 
 /// "pass 'p', port 'q', target 't': message"
@@ -96,7 +97,8 @@ struct CompileResult {
 /// `width`, `height`: the frame [pixels], >= 1; `max_size`: the device's limit for a 2-D texture [pixels].
 [[nodiscard]] CompileResult compile(const Graph& graph, int width, int height, int max_size = 16384);
 
-/// As compile(), but throws Error(scene) that lists every fault, one a line.
+/// As compile(), but throws Error(scene) that lists every fault, one a line; Error(limit) when all that is
+/// wrong is a size beyond `max_size`.
 [[nodiscard]] Plan compile_or_throw(const Graph& graph, int width, int height, int max_size = 16384);
 
 }  // namespace viscera

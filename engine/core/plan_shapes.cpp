@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "engine/core/plan_resolve.h"
 
@@ -11,11 +12,12 @@ namespace {
 constexpr double max_scale = 4.0;
 
 int scaled(int frame, double scale) {
-    return std::max(1, static_cast<int>(std::lround(frame * scale)));
+    constexpr double largest = std::numeric_limits<int>::max();
+    return static_cast<int>(std::clamp(std::round(frame * scale), 1.0, largest));
 }
 
 /// Message of the fault, empty when the rule holds; the size goes to `shape`.
-std::string apply_size(const SizeRule& rule, int width, int height, int max_size, TargetShape& shape) {
+std::string apply_size(const SizeRule& rule, int width, int height, TargetShape& shape) {
     if (rule.width != 0 || rule.height != 0) {
         if (rule.width < 1 || rule.height < 1) {
             return "an absolute size needs width and height of at least 1";
@@ -28,10 +30,6 @@ std::string apply_size(const SizeRule& rule, int width, int height, int max_size
         }
         shape.width = scaled(std::max(width, 1), rule.scale);
         shape.height = scaled(std::max(height, 1), rule.scale);
-    }
-    if (shape.width > max_size || shape.height > max_size) {
-        return "size " + std::to_string(shape.width) + "x" + std::to_string(shape.height) +
-               " is beyond the device's limit of " + std::to_string(max_size);
     }
     return {};
 }
@@ -66,8 +64,13 @@ TargetShapes resolve_shapes(const Graph& graph, int width, int height, int max_s
             fault(target.name, "is not a valid target name");
         }
         TargetShape shape{target.format, 1, 1, target.clear, std::nullopt, true};
-        if (std::string message = apply_size(target.size, width, height, max_size, shape); !message.empty()) {
+        if (std::string message = apply_size(target.size, width, height, shape); !message.empty()) {
             fault(target.name, std::move(message));
+        }
+        if (shape.width > max_size || shape.height > max_size) {
+            fault(target.name, "size " + std::to_string(shape.width) + "x" + std::to_string(shape.height) +
+                                   " is beyond the device's limit of " + std::to_string(max_size));
+            faults.back().limit = true;
         }
         if (!std::ranges::all_of(target.clear, [](float value) { return std::isfinite(value); })) {
             fault(target.name, "the clear value must be finite");

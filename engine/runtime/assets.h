@@ -26,24 +26,39 @@ class Assets {
     std::shared_ptr<T> shared(std::uint64_t key, Make&& make) {
         const Id id{std::type_index(typeid(T)), key};
         if (const auto found = entries_.find(id); found != entries_.end()) {
-            return std::static_pointer_cast<T>(found->second);
+            found->second.used = scenes_;
+            return std::static_pointer_cast<T>(found->second.object);
         }
         std::shared_ptr<T> made = std::forward<Make>(make)();
-        entries_.emplace(id, made);
+        entries_.emplace(id, Entry{made, scenes_});
         return made;
+    }
+
+    /// A scene, or a changed one, has come: what none of the last few asked for is given up, so that a
+    /// parameter that changes all the time does not fill the memory. Whatever is needed again is made again.
+    void begin_scene() {
+        ++scenes_;
+        std::erase_if(entries_,
+                      [this](const auto& entry) { return entry.second.used + kept_scenes < scenes_; });
     }
 
     /// A picture file (PNG, JPEG, EXR). Throws Error(file).
     [[nodiscard]] std::shared_ptr<const Image> image(const std::filesystem::path& file);
 
-    /// Number of objects made so far.
+    /// Number of objects held.
     [[nodiscard]] std::size_t size() const { return entries_.size(); }
     [[nodiscard]] Log& log() { return log_; }
 
   private:
+    static constexpr std::uint64_t kept_scenes = 8;
     using Id = std::pair<std::type_index, std::uint64_t>;
+    struct Entry {
+        std::shared_ptr<void> object;
+        std::uint64_t used = 0;  ///< number of the scene that last asked for it
+    };
     Log& log_;
-    std::map<Id, std::shared_ptr<void>> entries_;
+    std::map<Id, Entry> entries_;
+    std::uint64_t scenes_ = 0;
 };
 
 }  // namespace viscera

@@ -142,4 +142,13 @@ Graph build_graph(const Scene& scene, const SceneEffects& effects, std::span<con
     return graph;
 }
 
+Plan compile_scene(const Scene& scene, const Graph& graph, int width, int height, int max_size) {
+    try {
+        return compile_or_throw(graph, width, height, max_size);
+    } catch (const Error& error) {
+        const std::string where = scene.file.empty() ? "scene" : scene.file.string();
+        throw Error(error.code(), where, std::string(error.message()));
+    }
+}
+
 }  // namespace viscera

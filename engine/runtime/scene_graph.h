@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/core/graph.h"
+#include "engine/core/plan.h"
 #include "engine/core/scene.h"
 #include "engine/runtime/effect.h"
 
@@ -27,5 +28,9 @@ struct SceneEffects {
 [[nodiscard]] Graph build_graph(const Scene& scene, const SceneEffects& effects,
                                 std::span<const ImportedTarget> imported,
                                 std::span<const std::string> more_outputs = {});
+
+/// compile_or_throw() of a scene's graph, whose errors name the scene's file.
+[[nodiscard]] Plan compile_scene(const Scene& scene, const Graph& graph, int width, int height,
+                                 int max_size = 16384);
 
 }  // namespace viscera

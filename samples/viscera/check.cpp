@@ -20,7 +20,7 @@ void add_check(CLI::App& app, int& exit_code) {
     command->callback([arguments, &exit_code] {
         const Scene scene = arguments->scene.load();
         const SceneEffects effects = make_effects(scene, make_registry());
-        const Plan plan = compile_or_throw(build_graph(scene, effects, {}), scene.width, scene.height);
+        const Plan plan = compile_scene(scene, build_graph(scene, effects, {}), scene.width, scene.height);
         std::cout << (arguments->dot ? to_dot(plan) : to_table(plan));
         exit_code = 0;
     });
