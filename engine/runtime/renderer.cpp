@@ -33,7 +33,7 @@ bool same(const ImportedTarget& a, const ImportedTexture& b) {
 }
 
 /// Whether two effects take the same place in a graph.
-bool same(const Port& a, const Port& b) {
+bool same_place(const Port& a, const Port& b) {
     return a.name == b.name && a.access == b.access && a.target == b.target && a.format == b.format &&
            a.size.scale == b.size.scale && a.size.width == b.size.width && a.size.height == b.size.height &&
            a.clear == b.clear && a.optional == b.optional && a.passthrough == b.passthrough &&
@@ -108,9 +108,8 @@ class Renderer::Impl {
                         "'" + std::string(pointer) + "' leads to no parameter");
         }
         SceneEffects effects = make_effects(changed, registry_);
-        const auto same_port = [](const Port& a, const Port& b) { return same(a, b); };
         if (!planned_ || !std::ranges::equal(effects.effects[index]->ports(),
-                                             effects_.effects[index]->ports(), same_port)) {
+                                             effects_.effects[index]->ports(), same_place)) {
             const std::vector<ImportedTarget> imported = expected_;
             set_scene(std::move(changed), imported);
             return;
@@ -120,6 +119,7 @@ class Renderer::Impl {
         std::swap(effects_.effects[index], effects.effects[index]);
         effects_.parameter_keys[index] = effects.parameter_keys[index];
         scene_ = std::move(changed);
+        assets_.begin_scene();
     }
 
     const FrameReport& render(const Frame& frame) {
