@@ -34,12 +34,14 @@ class Assets {
         return made;
     }
 
-    /// A scene, or a changed one, has come: what none of the last few asked for is given up, so that a
-    /// parameter that changes all the time does not fill the memory. Whatever is needed again is made again.
+    /// A scene, or a changed one, has come: what nobody holds and none of the last few asked for is given up,
+    /// so that a parameter that changes all the time does not fill the memory. Whatever is needed again is
+    /// made again.
     void begin_scene() {
         ++scenes_;
-        std::erase_if(entries_,
-                      [this](const auto& entry) { return entry.second.used + kept_scenes < scenes_; });
+        std::erase_if(entries_, [this](const auto& entry) {
+            return entry.second.object.use_count() == 1 && entry.second.used + kept_scenes < scenes_;
+        });
     }
 
     /// A picture file (PNG, JPEG, EXR). Throws Error(file).
