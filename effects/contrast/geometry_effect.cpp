@@ -58,16 +58,18 @@ void GeometryParams::visit(ParamVisitor& v) {
 
 /// The vessel on the GPU, shared by all passes that draw it.
 struct GeometryEffect::GpuVessel {
-    explicit GpuVessel(const gl::Functions& gl, const Vessel& vessel) : mesh(gl, vessel.mesh) {
-        mesh.update_scalars("scalar", vessel.scalar);
+    GpuVessel(const gl::Functions& gl, std::shared_ptr<const Vessel> drawn)
+        : vessel(std::move(drawn)), mesh(gl, vessel->mesh) {
+        mesh.update_scalars("scalar", vessel->scalar);
         mesh.select_scalar("scalar");
-        if (!vessel.weight.empty()) {
-            std::vector<glm::vec2> uvs(vessel.weight.size());
-            std::ranges::transform(vessel.weight, uvs.begin(),
+        if (!vessel->weight.empty()) {
+            std::vector<glm::vec2> uvs(vessel->weight.size());
+            std::ranges::transform(vessel->weight, uvs.begin(),
                                    [](float weight) { return glm::vec2(weight, 0.0F); });
             mesh.update_uvs(uvs);
         }
     }
+    std::shared_ptr<const Vessel> vessel;  ///< known by its address, which thus stays its own
     gl::Mesh mesh;
     std::uint64_t host_version = 0;
     std::optional<gl::Texture> bolus_table;
@@ -187,17 +189,19 @@ std::uint32_t GeometryEffect::port_bit(std::string_view port) const {
 bool GeometryEffect::update_density(Prepare& prepare) {
     const HostValues* values = prepare.frame().values;
     const HostValues::Entry* given = values == nullptr ? nullptr : values->find(params_.vessel.scalar);
+    if (given != nullptr && given->values.size() != vessel_->scalar.size()) {
+        prepare.log().fault("contrast.host_density_count",
+                            "host values '" + params_.vessel.scalar + "' have " +
+                                std::to_string(given->values.size()) + " entries, the vessel has " +
+                                std::to_string(vessel_->scalar.size()) + " vertices; they are not used");
+        given = nullptr;
+    }
     if (given == nullptr) {
         if (host_version_ != 0 || host_density_.empty()) {
             host_version_ = 0;
             host_density_ = vessel_->scalar;
             densest_ = host_density_.empty() ? 0.0F : *std::ranges::max_element(host_density_);
         }
-    } else if (given->values.size() != vessel_->scalar.size()) {
-        prepare.log().fault("contrast.host_density_count",
-                            "host values '" + params_.vessel.scalar + "' have " +
-                                std::to_string(given->values.size()) + " entries, the vessel has " +
-                                std::to_string(vessel_->scalar.size()) + " vertices; they are not used");
     } else if (given->version != host_version_) {
         host_density_.assign(given->values.begin(), given->values.end());
         sanitise_density(host_density_, prepare.log());
@@ -308,7 +312,7 @@ void GeometryEffect::draw(const Pass& pass) {
     const std::uint64_t key =
         Hash().add(vessel_.get()).add(params_.method == OverlapMethod::painter ? this : nullptr).value();
     GpuVessel& gpu = *pass.assets().shared<GpuVessel>(
-        key, [&] { return std::make_shared<GpuVessel>(pass.gl(), *vessel_); });
+        key, [&] { return std::make_shared<GpuVessel>(pass.gl(), vessel_); });
     if (variant_.scalar == Scalar::density && gpu.host_version != host_version_) {
         gpu.mesh.update_scalars("scalar", host_density_);
         gpu.mesh.select_scalar("scalar");

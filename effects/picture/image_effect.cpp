@@ -45,7 +45,7 @@ void ImageParams::visit(ParamVisitor& v) {
              .doc = "cover cuts off what does not fit; stretch gives up the shape; height is as high as the "
                     "target and black beside."},
             fit);
-    v.field({.name = "gain", .doc = "Factor on the values.", .min = 0.0}, gain);
+    v.field({.name = "gain", .doc = "Factor on the values.", .min = 0.0, .max = 65504.0}, gain);
     v.field({.name = "monochrome", .doc = "One channel, the file's first; otherwise four."}, monochrome);
 }
 
