@@ -97,7 +97,7 @@ void CompositeEffect::draw(const Pass& pass) {
         }
     }
     program.set("u_background_level", static_cast<float>(params_.background));
-    program.set("u_attenuation", static_cast<float>(-std::log(params_.darkest)));
+    program.set("u_attenuation", static_cast<float>(std::log2(params_.darkest)));
     pass.draw_fullscreen();
 }
 

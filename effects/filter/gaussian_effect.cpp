@@ -25,7 +25,8 @@ void GaussianParams::visit(ParamVisitor& v) {
              .min = 0.0,
              .max = 0.5},
             sigma);
-    v.field({.name = "gain", .doc = "Factor on the result, which is cut at 1.", .min = 0.0}, gain);
+    v.field({.name = "gain", .doc = "Factor on the result, which is cut at 1.", .min = 0.0, .max = 65504.0},
+            gain);
 }
 
 GaussianTaps make_gaussian(double sigma_pixels) {
@@ -52,7 +53,12 @@ GaussianTaps make_gaussian(double sigma_pixels) {
     return taps;
 }
 
-GaussianEffect::GaussianEffect() : programs_{{"common/fullscreen.vert", "filter/gaussian.frag", {}}} {}
+GaussianEffect::GaussianEffect() {
+    for (std::size_t taps = 0; taps <= gaussian_taps; ++taps) {
+        programs_.push_back(
+            {"common/fullscreen.vert", "filter/gaussian.frag", {"TAPS " + std::to_string(taps)}});
+    }
+}
 
 std::vector<Port> GaussianEffect::ports() const {
     return {{.name = "blurred",
@@ -86,13 +92,12 @@ Work GaussianEffect::prepare(Prepare& prepare) {
 }
 
 void GaussianEffect::draw(const Pass& pass) {
-    const gl::Program& program = pass.use(0);
+    const gl::Program& program = pass.use(taps_.pairs.size());
     pass.bind(program, "u_source", "source", gl::Filter::linear);
     const glm::vec2 texel = 1.0F / glm::vec2(pass.size());
     program.set("u_direction", params_.axis == Axis::x ? glm::vec2(texel.x, 0.0F) : glm::vec2(0.0F, texel.y));
     program.set("u_centre", static_cast<float>(taps_.centre));
     program.set("u_taps", std::span<const glm::vec2>(uniform_));
-    program.set("u_tap_count", static_cast<int>(taps_.pairs.size()));
     program.set("u_gain", static_cast<float>(params_.gain));
     pass.draw_fullscreen();
 }

@@ -17,7 +17,7 @@ uniform sampler2D u_extravasate;
 uniform sampler2D u_capillary;
 in vec2 v_uv;
 #endif
-uniform float u_attenuation;  // -log of the transmission at ratio 1
+uniform float u_attenuation;  // log2 of the transmission at ratio 1
 layout(location = 0) out float o_final;
 
 void main() {
@@ -34,7 +34,7 @@ void main() {
 #endif
 #ifdef CAPILLARY
     // Blurred, so that it may be kept at a lower resolution.
-    ratio = max(ratio, texture(u_capillary, v_uv).r);
+    ratio = max(ratio, textureLod(u_capillary, v_uv, 0.0).r);
 #endif
 #ifdef BACKGROUND
     float background = texelFetch(u_background, pixel, 0).r;
@@ -44,6 +44,6 @@ void main() {
 #ifdef THESIS_TONE
     o_final = ratio < 0.5 ? mix(background, 0.1, 2.0 * ratio) : 0.15 * ratio;
 #else
-    o_final = background * exp(-u_attenuation * ratio);
+    o_final = background * exp2(u_attenuation * ratio);
 #endif
 }

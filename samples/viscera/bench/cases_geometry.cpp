@@ -68,8 +68,7 @@ void run_overlap(Lab& lab) {
     SceneText scene(lab.empty_scene());
     const std::array<std::string, 3> methods{"max", "depth", "painter"};
     for (const std::string& method : methods) {
-        scene.pass(method, "contrast.main", coronary({{"method", method}}),
-                   {{"main", method}, {"depth", method + ".depth"}});
+        scene.pass(method, "contrast.main", coronary({{"method", method}}), {{"main", method}});
         scene.output(method);
     }
     Stage stage(lab, scene.json(), {.time_s = injecting_s});

@@ -34,7 +34,7 @@ void print_table(std::ostream& out, std::span<const Row> rows, bool hardware) {
         if (row.group != group) {
             group = row.group;
             out << '\n'
-                << std::left << std::setw(38) << group << std::right << std::setw(10) << "ms" << std::setw(19)
+                << std::left << std::setw(38) << group << std::right << std::setw(10) << "ms" << std::setw(21)
                 << "quartiles" << std::setw(10) << "cpu ms" << std::setw(9) << "ratio" << std::setw(9)
                 << "by cpu" << std::setw(7) << "goal" << std::setw(11) << "error"
                 << "  of what\n";
@@ -44,7 +44,7 @@ void print_table(std::ostream& out, std::span<const Row> rows, bool hardware) {
         const double by_time = ratio(row.samples, row.base, &Sample::time_ms);
         const double by_work = ratio(row.samples, row.base, &Sample::work_ms);
         out << "  " << std::left << std::setw(36) << row.name << std::right;
-        out << std::setw(10) << (row.samples.empty() ? "" : fixed(time.median, 4)) << std::setw(19)
+        out << std::setw(10) << (row.samples.empty() ? "" : fixed(time.median, 4)) << std::setw(21)
             << (row.samples.empty() ? "" : fixed(time.lower, 4) + " " + fixed(time.upper, 4));
         out << std::setw(10) << (work.median > 0.0 ? fixed(work.median, 3) : "");
         out << std::setw(9) << (std::isnan(by_time) ? "" : fixed(by_time, 3)) << std::setw(9)
