@@ -23,6 +23,7 @@ class GlTest : public testing::TestWithParam<Backend> {
   protected:
     void TearDown() override;
     [[nodiscard]] const gl::Functions& gl() const { return *functions_; }
+    [[nodiscard]] const Context& context() const { return *context_; }
     [[nodiscard]] const ContextInfo& context_info() const { return context_->info(); }
     [[nodiscard]] Log& log() { return log_; }
 
