@@ -200,6 +200,25 @@ TEST_P(GeometryAccuracy, CloudAndDistance) {
     expect("distance", "contrast.distance", [&] { return picture_->distance(); });
 }
 
+TEST_P(GeometryAccuracy, Silhouette) {
+    load(tube_parameters());
+    json scene = scene_of(
+        tube_camera(), json::array({pass("mask", "contrast.silhouette", {{"mesh", "../meshes/tube.glb"}})}),
+        {"contrast.mask"}, side, side);
+    if (floats()) {
+        use_floats(scene, {"contrast.mask"});
+    }
+    stage_.renderer().keep({});
+    stage_.load(scene);
+    stage_.render(0.0);
+    const reference::Buffer map = picture_->distance();
+    expect("silhouette", "contrast.mask", [&] {
+        reference::Buffer mask(side, side);
+        std::ranges::transform(map.data, mask.data.begin(), [](double q) { return q < 0.0 ? 0.0 : 1.0; });
+        return mask;
+    });
+}
+
 INSTANTIATE_TEST_SUITE_P(Targets, GeometryAccuracy, testing::Values(true, false),
                          [](const auto& info) { return info.param ? "float32" : "half"; });
 
