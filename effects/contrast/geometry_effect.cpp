@@ -222,6 +222,9 @@ bool GeometryEffect::makes_density(double since_start_s) const {
 Work GeometryEffect::prepare(Prepare& prepare) {
     if (parameters_key_ != prepare.parameters_key()) {
         parameters_key_ = prepare.parameters_key();
+        main_bits_ = port_bit("main") | port_bit("depth");
+        cloud_bit_ = port_bit("cloud");
+        distance_bit_ = port_bit("distance");
         bolus_.emplace(params_.bolus, prepare.log());
         vessel_.reset();
         host_density_.clear();
@@ -260,9 +263,9 @@ Work GeometryEffect::prepare(Prepare& prepare) {
                                         : "no injection at this time");
     }
     std::uint32_t empty = 0;
-    empty |= variant_.scalar == Scalar::none ? port_bit("main") | port_bit("depth") : 0U;
-    empty |= variant_.cloud ? 0U : port_bit("cloud");
-    empty |= variant_.distance ? 0U : port_bit("distance");
+    empty |= variant_.scalar == Scalar::none ? main_bits_ : 0U;
+    empty |= variant_.cloud ? 0U : cloud_bit_;
+    empty |= variant_.distance ? 0U : distance_bit_;
 
     const glm::dmat4 view_projection = prepare.frame().eye().view_projection();
     Hash key;

@@ -81,6 +81,9 @@ class GeometryEffect final : public Effect {
     std::vector<ProgramDesc> programs_;
 
     std::uint64_t parameters_key_ = 0;
+    std::uint32_t main_bits_ = 0;  ///< places in ports(): of main and its depth
+    std::uint32_t cloud_bit_ = 0;
+    std::uint32_t distance_bit_ = 0;
     std::optional<Bolus> bolus_;
     std::shared_ptr<const Vessel> vessel_;
     std::vector<float> host_density_;

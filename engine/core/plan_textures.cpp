@@ -1,6 +1,7 @@
 #include "engine/core/plan_textures.h"
 
 #include <algorithm>
+#include <array>
 
 namespace viscera {
 namespace {
@@ -73,7 +74,9 @@ void assign_textures(Plan& plan, const std::vector<bool>& needed) {
         }
     }
 
-    // First fit in the order of the first pass, which for intervals needs the fewest textures.
+    // First fit in the order of the first pass, which for intervals needs the fewest textures. Contents with
+    // different clear values do not share: what little of a texture was drawn is then all that the next one
+    // has to clear.
     std::vector<std::size_t> order;
     for (std::size_t c = 0; c < plan.contents.size(); ++c) {
         if (root[c] == c && chains[c].needed) {
@@ -82,6 +85,7 @@ void assign_textures(Plan& plan, const std::vector<bool>& needed) {
     }
     std::ranges::stable_sort(order, {}, [&](std::size_t c) { return plan.contents[c].first_pass; });
     std::vector<std::optional<std::size_t>> busy_until;  // of each texture; none: never free again
+    std::vector<std::array<float, 4>> cleared_to;        // each texture
     for (const std::size_t c : order) {
         const PlanContent& content = plan.contents[c];
         const Chain& chain = chains[c];
@@ -90,13 +94,14 @@ void assign_textures(Plan& plan, const std::vector<bool>& needed) {
             const PlanTexture& candidate = plan.textures[texture];
             if (!chain.exclusive && busy_until[texture] && *busy_until[texture] < content.first_pass &&
                 candidate.format == content.format && candidate.width == content.width &&
-                candidate.height == content.height) {
+                candidate.height == content.height && cleared_to[texture] == content.clear) {
                 break;
             }
         }
         if (texture == plan.textures.size()) {
             plan.textures.push_back({content.format, content.width, content.height});
             busy_until.emplace_back();
+            cleared_to.push_back(content.clear);
         }
         busy_until[texture] = chain.exclusive ? std::nullopt : std::optional(chain.last_pass);
         plan.contents[c].texture = texture;

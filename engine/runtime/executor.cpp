@@ -13,12 +13,26 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+// Software renderers fill whole targets so much faster than parts of them.
+constexpr double software_clear_gain = 8.0;
+
 double milliseconds_since(Clock::time_point start) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
 bool makes_content(Access access) {
     return access == Access::write || access == Access::modify;
+}
+
+/// The smallest rectangle around both.
+PixelRect around(const PixelRect& a, const PixelRect& b) {
+    if (a.empty() || b.empty()) {
+        return a.empty() ? b : a;
+    }
+    const int left = std::min(a.x, b.x);
+    const int bottom = std::min(a.y, b.y);
+    return {left, bottom, std::max(a.x + a.width, b.x + b.width) - left,
+            std::max(a.y + a.height, b.y + b.height) - bottom};
 }
 
 /// The part of `region` that lies on a target, since an effect may ask for more.
@@ -118,7 +132,7 @@ void Executor::run(const Frame& frame, FrameReport& report) {
             settle(settlement);
         }
     } catch (...) {
-        std::ranges::fill(pool_.keys(), 0);
+        pool_.forget_content();
         throw;
     }
     ran_ = true;
@@ -130,9 +144,9 @@ void Executor::import(const Frame& frame) {
     for (const ImportedTarget& target : imported_) {
         const auto found = std::ranges::find(frame.imported, target.name, &ImportedTexture::target);
         if (found->texture == 0 || shared_.gl.IsTexture(found->texture) == GL_FALSE) {
-            throw Error(ErrorCode::usage, target.name,
-                        "the imported texture " + std::to_string(found->texture) +
-                            " does not exist in this context");
+            throw Error(
+                ErrorCode::usage, target.name,
+                "the imported texture " + std::to_string(found->texture) + " does not exist in this context");
         }
         // A host may have deleted a texture and made another of the same name, which no framebuffer made
         // before then holds.
@@ -219,8 +233,7 @@ void Executor::draw(const Frame& frame, std::size_t p) {
         state.timer->begin();
     }
     target.bind();
-    gl::apply(shared_.gl, gl::depth_tested_state, {0, 0, size.x, size.y});
-    clear(state, pass, target);
+    clear(state, pass, target, region);
     const Pass view(shared_, frame, state.programs, state.inputs, size, region);
     view.raster(gl::overwrite_state);
     state.effect->draw(view);
@@ -237,7 +250,9 @@ void Executor::observe(std::string_view pass, bool begins) const {
     }
 }
 
-void Executor::clear(const PassState& state, const PlanPass& pass, const gl::Framebuffer& target) const {
+void Executor::clear(const PassState& state, const PlanPass& pass, const gl::Framebuffer& target,
+                     const PixelRect& region) {
+    const PixelRect all{0, 0, target.width(), target.height()};
     int colour = 0;
     for (std::size_t b = 0; b < pass.bindings.size(); ++b) {
         const PlanBinding& binding = pass.bindings[b];
@@ -246,21 +261,44 @@ void Executor::clear(const PassState& state, const PlanPass& pass, const gl::Fra
         }
         const bool is_depth = binding.content && info(plan_.contents[*binding.content].format).is_depth;
         const int index = is_depth ? -1 : colour++;
-        if (!binding.content || schedule_.contents()[*binding.content].empty) {
+        if (!binding.content || !schedule_.contents()[*binding.content].is_drawn(*binding.content)) {
             continue;
         }
         const PlanContent& content = plan_.contents[*binding.content];
         const bool continues = content.modifies && !schedule_.contents()[*content.modifies].empty;
         const bool overwritten =
             state.ports[state.port_of_binding[b]].overwrites && state.work.kind == Work::Kind::all;
+        TargetPool::Backdrop unknown;
+        TargetPool::Backdrop& backdrop = content.texture ? pool_.backdrop(*content.texture) : unknown;
         if (continues || overwritten) {
+            backdrop.known = backdrop.known && !overwritten;
+            backdrop.drawn = around(backdrop.drawn, region);
             continue;
         }
-        if (is_depth) {
-            target.clear_depth(content.clear[0]);
-        } else {
-            target.clear_colour(index, content.clear);
-        }
+        const bool has_backdrop = backdrop.known && backdrop.clear == content.clear;
+        clear_part(target, index, content.clear, has_backdrop ? backdrop.drawn : all);
+        backdrop = {true, content.clear, region};
+    }
+}
+
+/// index: of a colour, or -1 for depth.
+void Executor::clear_part(const gl::Framebuffer& target, int index, const std::array<float, 4>& value,
+                          const PixelRect& part) const {
+    const double share = static_cast<double>(part.width) * part.height /
+                         (static_cast<double>(target.width()) * target.height());
+    const bool whole = share * (capabilities_.software ? software_clear_gain : 1.0) >= 1.0;
+    if (part.empty()) {
+        return;
+    }
+    gl::RasterState state = gl::depth_tested_state;
+    if (!whole) {
+        state.scissor = gl::Rect{part.x, part.y, part.width, part.height};
+    }
+    gl::apply(shared_.gl, state, {0, 0, target.width(), target.height()});
+    if (index < 0) {
+        target.clear_depth(value[0]);
+    } else {
+        target.clear_colour(index, value);
     }
 }
 
@@ -280,6 +318,9 @@ void Executor::settle(const Settlement& settlement) {
         return;
     }
     const gl::Texture& texture = texture_of(settlement.content);
+    if (const auto& slot = plan_.contents[settlement.content].texture) {
+        pool_.backdrop(*slot) = {};
+    }
     const bool is_depth = info(plan_.contents[settlement.content].format).is_depth;
     const gl::Texture* const colour = is_depth ? nullptr : &texture;
     const gl::Framebuffer& target = pool_.framebuffer(std::span(&colour, is_depth ? 0 : 1),

@@ -73,7 +73,10 @@ class Executor {
     void check(std::string_view pass) const;
     void observe(std::string_view pass, bool begins) const;
     [[nodiscard]] const gl::Texture& texture_of(std::size_t content) const;
-    void clear(const PassState& state, const PlanPass& pass, const gl::Framebuffer& target) const;
+    void clear(const PassState& state, const PlanPass& pass, const gl::Framebuffer& target,
+               const PixelRect& region);
+    void clear_part(const gl::Framebuffer& target, int index, const std::array<float, 4>& value,
+                    const PixelRect& part) const;
 
     Pass::Shared shared_;
     const gl::Capabilities& capabilities_;

@@ -33,7 +33,14 @@ void TargetPool::reset(const Plan& plan) {
         }
         descriptions_.push_back(wanted);
     }
-    keys_.assign(textures_.size(), 0);
+    keys_.resize(textures_.size());
+    backdrops_.resize(textures_.size());
+    forget_content();
+}
+
+void TargetPool::forget_content() {
+    std::ranges::fill(keys_, 0);
+    std::ranges::fill(backdrops_, Backdrop{});
 }
 
 GLuint TargetPool::release(GLuint id) {
@@ -46,12 +53,14 @@ GLuint TargetPool::release(GLuint id) {
     (void)textures_[index].release();
     textures_[index] = make(gl_, descriptions_[index], index);
     keys_[index] = 0;
+    backdrops_[index] = {};
     return id;
 }
 
 void TargetPool::swap(std::size_t a, std::size_t b) {
     std::swap(textures_[a], textures_[b]);
     std::swap(keys_[a], keys_[b]);
+    std::swap(backdrops_[a], backdrops_[b]);
 }
 
 const gl::Framebuffer& TargetPool::framebuffer(std::span<const gl::Texture* const> colours,

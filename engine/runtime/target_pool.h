@@ -9,6 +9,7 @@
 #include "engine/core/plan.h"
 #include "engine/gl/framebuffer.h"
 #include "engine/gl/texture.h"
+#include "engine/runtime/frame.h"
 
 namespace viscera {
 
@@ -24,6 +25,15 @@ class TargetPool {
     /// Gives the texture of this OpenGL name to the caller, who then deletes it; the pool makes a new one in
     /// its place. 0: not ours.
     [[nodiscard]] GLuint release(GLuint id);
+    /// What is known of a texture's pixels: all but those of `drawn` have the value `clear`.
+    struct Backdrop {
+        bool known = false;
+        std::array<float, 4> clear{};
+        PixelRect drawn;
+    };
+    [[nodiscard]] Backdrop& backdrop(std::size_t index) { return backdrops_[index]; }
+    /// Nothing is known of any texture any more.
+    void forget_content();
     /// Content keys, by texture; 0: nothing.
     [[nodiscard]] std::span<std::uint64_t> keys() { return keys_; }
     /// Exchanges two textures with what they hold: how a history target turns over.
@@ -47,6 +57,7 @@ class TargetPool {
     std::vector<PlanTexture> descriptions_;
     std::vector<gl::Texture> textures_;
     std::vector<std::uint64_t> keys_;
+    std::vector<Backdrop> backdrops_;
     std::vector<Entry> framebuffers_;
 };
 

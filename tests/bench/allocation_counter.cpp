@@ -1,0 +1,2 @@
+// Operator new is replaced once per binary.
+#include "tests/core/allocation_counter.cpp"
