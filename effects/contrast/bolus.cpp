@@ -89,6 +89,12 @@ DensityRange table_range(const BolusTable& table, double first_s, double last_s)
     return range;
 }
 
+/// Finite for every positive value: infinity times 0 would be no number.
+float inverse(double seconds) {
+    constexpr double largest = 1e30;
+    return static_cast<float>(std::min(1.0 / seconds, largest));
+}
+
 }  // namespace
 
 void BolusPoint::visit(ParamVisitor& v) {
@@ -138,9 +144,9 @@ Bolus::Bolus(const BolusParams& params, Log& log) : params_(params) {
     params_.amplitude = std::clamp(params.amplitude, 0.0, 1.0);
     table_ = sample_table(params.table, log);
     uniforms_ = {.amplitude = static_cast<float>(params_.amplitude),
-                 .inv_rise = static_cast<float>(1.0 / params_.rise_s),
+                 .inv_rise = inverse(params_.rise_s),
                  .duration = static_cast<float>(params_.duration_s),
-                 .inv_washout = static_cast<float>(1.0 / params_.washout_s),
+                 .inv_washout = inverse(params_.washout_s),
                  .tail_scale = static_cast<float>(1.0 / (1.0 - cut)),
                  .tail_offset = static_cast<float>(cut / (1.0 - cut))};
 }

@@ -103,6 +103,10 @@ class Reader final : public ParamVisitor {
             fault(source->pointer, "a path cannot hold a zero byte");
             return;
         }
+        if (info.required && text->empty()) {
+            fault(source->pointer, "names no file");
+            return;
+        }
         const std::filesystem::path path(*text);
         value.path = path.empty() ? path : (base_ / path).lexically_normal();
     }

@@ -45,8 +45,9 @@ using nlohmann::json;
                     {"minItems", node.components},
                     {"maxItems", node.components}};
         case FieldKind::text:
-        case FieldKind::path:
             return {{"type", "string"}};
+        case FieldKind::path:
+            return node.info.required ? json{{"type", "string"}, {"minLength", 1}} : json{{"type", "string"}};
         case FieldKind::choice:
             return {{"enum", node.choices}};
         case FieldKind::group:
