@@ -26,7 +26,9 @@ TEST_P(Embedded, ARendererLeavesNoObjectBehind) {
         const GLuint released = renderer.release_texture("final");
         recorder.forget_texture(released);
         gl().DeleteTextures(1, &released);
+        recorder.hold_fences();
         renderer.render(renderer.still(World::time_s));
+        EXPECT_TRUE(recorder.alive().contains("Syncs")) << "no read-back is under way when the renderer goes";
         EXPECT_GT(recorder.made(), 60U);
     }
     EXPECT_EQ(recorder.alive(), Alive{});

@@ -63,6 +63,24 @@ struct Recorder::Wrapped {
         real<PFNGLDELETESYNCPROC>("glDeleteSync")(sync);
         current->syncs_.erase(sync);
     }
+    static GLenum GLAD_API_PTR wait_sync(GLsync sync, GLbitfield flags, GLuint64 timeout_ns) {
+        return current->fences_held_ && timeout_ns == 0
+                   ? GL_TIMEOUT_EXPIRED
+                   : real<PFNGLCLIENTWAITSYNCPROC>("glClientWaitSync")(sync, flags, timeout_ns);
+    }
+    static GLuint texture(GLuint name) {
+        return name != 0 && name == current->renamed_.first ? current->renamed_.second : name;
+    }
+    static void GLAD_API_PTR bind_texture(GLenum target, GLuint name) {
+        real<PFNGLBINDTEXTUREPROC>("glBindTexture")(target, texture(name));
+    }
+    static GLboolean GLAD_API_PTR is_texture(GLuint name) {
+        return real<PFNGLISTEXTUREPROC>("glIsTexture")(texture(name));
+    }
+    static void GLAD_API_PTR attach(GLenum target, GLenum point, GLenum kind, GLuint name, GLint level) {
+        real<PFNGLFRAMEBUFFERTEXTURE2DPROC>("glFramebufferTexture2D")(target, point, kind, texture(name),
+                                                                      level);
+    }
     static void GLAD_API_PTR bind_framebuffer(GLenum target, GLuint framebuffer) {
         real<PFNGLBINDFRAMEBUFFERPROC>("glBindFramebuffer")(target, framebuffer);
         current->default_framebuffer_binds_ += framebuffer == 0 ? 1 : 0;
@@ -95,6 +113,10 @@ struct Recorder::Wrapped {
             {"glDeleteProgram", pointer(&delete_program)},
             {"glFenceSync", pointer(&fence)},
             {"glDeleteSync", pointer(&delete_sync)},
+            {"glClientWaitSync", pointer(&wait_sync)},
+            {"glBindTexture", pointer(&bind_texture)},
+            {"glIsTexture", pointer(&is_texture)},
+            {"glFramebufferTexture2D", pointer(&attach)},
             {"glBindFramebuffer", pointer(&bind_framebuffer)}};
         if (const auto single = singles.find(name); single != singles.end()) {
             return single->second;

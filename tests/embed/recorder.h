@@ -4,6 +4,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <utility>
 
 #include "engine/gl/functions.h"
 
@@ -27,6 +28,11 @@ class Recorder {
     [[nodiscard]] std::size_t made() const { return made_; }
     /// Forgets a texture that the host has taken over.
     void forget_texture(GLuint texture);
+    /// From now on the name `seen` stands for the texture `real`: as when a driver gives the name of a
+    /// deleted texture to a new one, which Mesa does not.
+    void reuse_name(GLuint seen, GLuint real) { renamed_ = {seen, real}; }
+    /// From now on no fence is reached for one who does not wait for it.
+    void hold_fences() { fences_held_ = true; }
     [[nodiscard]] int default_framebuffer_binds() const { return default_framebuffer_binds_; }
 
   private:
@@ -41,6 +47,8 @@ class Recorder {
     std::set<GLsync> syncs_;
     std::size_t made_ = 0;
     int default_framebuffer_binds_ = 0;
+    bool fences_held_ = false;
+    std::pair<GLuint, GLuint> renamed_{0, 0};
 };
 
 }  // namespace viscera::test
