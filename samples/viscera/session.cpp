@@ -54,10 +54,13 @@ std::unique_ptr<Context> ContextArguments::open(const ContextOptions& wanted) co
     for (const Refusal& refusal : refusals) {
         log(LogLevel::info, std::string(to_string(refusal.backend)) + " refused: " + refusal.why);
     }
-    const ContextInfo& info = context->info();
+    name_renderer(context->info(), log);
+    return context;
+}
+
+void name_renderer(const ContextInfo& info, const LogCallback& log) {
     log(LogLevel::info, "renders with " + std::string(to_string(info.backend)) + ": " + info.renderer +
                             ", OpenGL " + info.version + (info.software ? " (software)" : ""));
-    return context;
 }
 
 void SceneArguments::add_to(CLI::App& command) {

@@ -31,6 +31,9 @@ struct ContextArguments {
     [[nodiscard]] std::unique_ptr<Context> open(const ContextOptions& options = {}) const;
 };
 
+/// Says which renderer was chosen: software must never pass for hardware.
+void name_renderer(const ContextInfo& info, const LogCallback& log);
+
 /// The options of every command that takes a scene.
 struct SceneArguments {
     std::filesystem::path file;

@@ -201,7 +201,9 @@ int view(const ViewArguments& arguments) {
     const Registry registry = make_registry();
     const std::unique_ptr<WindowContext> window =
         create_window({.width = scene.width, .height = scene.height, .title = "viscera: " + scene.name});
-    Renderer renderer(window->proc_address(), registry, {.log = stderr_log()});
+    const LogCallback log = stderr_log();
+    name_renderer(window->info(), log);
+    Renderer renderer(window->proc_address(), registry, {.log = log});
     renderer.set_scene(std::move(scene));
     Viewer(arguments, *window, renderer).run();
     return 0;

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <regex>
 
 #include "engine/io/exr.h"
@@ -125,6 +126,24 @@ TEST_F(Command, BackendsListsEveryWayWithoutADisplay) {
 
 TEST_F(Command, ViewWithoutADisplayIsRefused) {
     expect_refused(viscera({"view", path("scene.json")}), 5, "isplay");
+}
+
+TEST_F(Command, ViewShowsFramesWhereThereIsADisplay) {
+    const Ended ended = run({"xvfb-run", "-a", VISCERA_APP, "view", path("scene.json"), "--frames", "3"});
+    if (ended.code == 127) {
+        GTEST_SKIP() << "xvfb-run is not installed";
+    }
+    expect_fine(ended);
+    // xvfb-run sends both streams to stdout.
+    EXPECT_THAT(ended.out + ended.err, HasSubstr("renders with glfw: "));
+}
+
+TEST_F(Command, BenchNamesItsCasesAndKnowsNoOthers) {
+    const Ended listed = viscera({"bench", "--list"});
+    expect_fine(listed);
+    EXPECT_GT(std::ranges::count(listed.out, '\n'), 3);
+    expect_refused(viscera({"bench", "nonsense", "--backend", "osmesa"}), 2, "nonsense");
+    expect_refused(viscera({"bench", "--backend", "glfw"}), 5, "isplay");
 }
 
 class Diff : public AppTest {

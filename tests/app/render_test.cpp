@@ -264,5 +264,41 @@ TEST_F(Render, SurvivedFaultsAreCounted) {
     EXPECT_EQ(ended.err.find("not finite", first + 1), std::string::npos) << "said once";
 }
 
+/// The whole injection of the scene that the project ships, small.
+TEST_F(Render, TheShippedSceneStaysFiniteAndSkipsWhatItCan) {
+    const std::string scene = std::string(VISCERA_SOURCE_DIR) + "/assets/scenes/angiography.json";
+    if (!std::filesystem::exists(std::string(VISCERA_SOURCE_DIR) + "/assets/meshes/coronary.glb")) {
+        GTEST_SKIP() << "the assets are not made: cmake --build . --target assets";
+    }
+    expect_fine(
+        viscera({"render", scene, "-o", path("out"), "--backend", "osmesa", "--resolution", "64x64",
+                 "--frames", "0:90", "--dump", "all", "--exr-multipart", "--report", path("report.json")}));
+    const json document = report();
+    // Contrast runs downstream of the catheter only; nothing else is amiss.
+    const json faults = document.value("faults", json::object());
+    for (const auto& [key, count] : faults.items()) {
+        EXPECT_THAT(key, testing::StartsWith("contrast.unreached_")) << count;
+    }
+    ASSERT_EQ(document["frames"].size(), 90U);
+    std::map<std::string, int> statuses;
+    double darkest = 1.0;
+    for (const json& frame : document["frames"]) {
+        for (const json& target : frame["targets"]) {
+            EXPECT_EQ(target["nan"], 0) << target;
+            EXPECT_EQ(target["inf"], 0) << target;
+            if (target["name"] == "final") {
+                darkest = std::min(darkest, target["min"].get<double>());
+            }
+        }
+        for (const json& pass : frame["passes"]) {
+            ++statuses[pass["status"].get<std::string>()];
+        }
+    }
+    EXPECT_LT(darkest, 0.2) << "contrast shows";
+    for (const char* status : {"run", "reduced", "idle", "cached"}) {
+        EXPECT_GT(statuses[status], 0) << status;
+    }
+}
+
 }  // namespace
 }  // namespace viscera::test
