@@ -18,17 +18,17 @@ inline constexpr double summarize_width = 0.05;
 /// Joins main and cloud at one pixel: the one text that shader and reference follow.
 ///
 ///     r      = mix(main, c, q)
-///     thesis : distance > 0 and 0.9 main > r  ?  (r + main) / 2  :  r
-///     smooth : distance > 0  ?  mix(r, (r + main) / 2, smoothstep(-w, w, 0.9 main - r))  :  r
+///     thesis : q > 0 and 0.9 main > r  ?  (r + main) / 2  :  r
+///     smooth : q > 0  ?  mix(r, (r + main) / 2, smoothstep(-w, w, 0.9 main - r))  :  r
 ///
-/// with w = summarize_width. smooth needs no blend across distance = 0: there q = 0, so r = main, and both
-/// ends of the mix are main.
-/// main, c, q, distance: in [0, 1]. Returns a value in [0, 1].
-[[nodiscard]] constexpr double summarize(double main, double c, double q, double distance,
-                                         SummarizeTransition transition) {
+/// with w = summarize_width. The published rule asks whether the distance map is above 0, which is q before
+/// the cloud's threshold. Where the threshold dropped the cloud, c = q = 0, so r = main and both sides of the
+/// rule are main: the map changes nothing and need not be drawn. For the same reason smooth needs no blend
+/// across q = 0. main, c, q: in [0, 1]. Returns a value in [0, 1].
+[[nodiscard]] constexpr double summarize(double main, double c, double q, SummarizeTransition transition) {
     const double r = main + (c - main) * q;
-    if (!(distance > 0.0)) {
-        return r;
+    if (!(q > 0.0)) {
+        return main;
     }
     const double joined = 0.5 * (r + main);
     const double excess = 0.9 * main - r;

@@ -26,16 +26,11 @@ std::vector<Port> SummarizeEffect::ports() const {
              .access = Access::read,
              .target = "contrast.cloud",
              .doc = "The cloud.",
-             .optional = true},
-            {.name = "distance",
-             .access = Access::read,
-             .target = "contrast.distance",
-             .doc = "Closeness to the injection.",
              .optional = true}};
 }
 
 Work SummarizeEffect::prepare(Prepare& prepare) {
-    if (!prepare.has("cloud") || !prepare.has("distance")) {
+    if (!prepare.has("cloud")) {
         return Work::idle("no injection: the summary is contrast.main itself");
     }
     return Work::all(prepare.parameters_key());
@@ -45,7 +40,6 @@ void SummarizeEffect::draw(const Pass& pass) {
     const gl::Program& program = pass.use(static_cast<std::size_t>(transition_));
     pass.bind(program, "u_main", "main");
     pass.bind(program, "u_cloud", "cloud");
-    pass.bind(program, "u_distance", "distance");
     pass.draw_fullscreen();
 }
 

@@ -2,7 +2,6 @@
 // Joins the vessels with the cloud at the injection point: effects/contrast/summarize_curve.h.
 uniform sampler2D u_main;
 uniform sampler2D u_cloud;
-uniform sampler2D u_distance;
 layout(location = 0) out float o_summary;
 
 const float half_width = 0.05;
@@ -11,7 +10,6 @@ void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     float main_value = texelFetch(u_main, pixel, 0).r;
     vec2 cloud = texelFetch(u_cloud, pixel, 0).rg;
-    float near = texelFetch(u_distance, pixel, 0).r;
     float r = mix(main_value, cloud.r, cloud.g);
     float joined = 0.5 * (r + main_value);
     float excess = 0.9 * main_value - r;
@@ -20,5 +18,5 @@ void main() {
 #else
     float weight = smoothstep(-half_width, half_width, excess);
 #endif
-    o_summary = near > 0.0 ? mix(r, joined, weight) : r;
+    o_summary = cloud.g > 0.0 ? mix(r, joined, weight) : main_value;
 }
