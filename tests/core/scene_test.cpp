@@ -12,6 +12,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/json_text.h"
+#include "tests/core/sample_scene.h"
 
 namespace viscera {
 namespace {
@@ -21,67 +22,8 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-constexpr const char* valid = R"({
-    "$schema": "../schema/scene.schema.json",
-    "version": 1,
-    "comment": "a note",
-    "name": "two passes",
-    "resolution": [640, 480],
-    "time_s": 2.5,
-    "frames_per_second": 15,
-    "camera": {"kind": "orthographic", "eye_mm": [0, -100, 0], "comment": "front"},
-    "shared": {
-        "flow": {"rate": 4, "mesh": "../meshes/a.glb", "points": [1, 2]},
-        "fast": {"$ref": "#/shared/flow", "rate": 9},
-        "three": 3
-    },
-    "targets": {
-        "comment": "only what differs",
-        "contrast.main": {"format": "r16f", "scale": 0.5, "clear": [1]},
-        "fixed": {"size": [32, 16]}
-    },
-    "passes": [
-        {"name": "first", "effect": "test.flow", "parameters": {"$ref": "#/shared/flow"}},
-        {"name": "second", "effect": "test.flow", "enabled": false, "comment": ["any", "thing"],
-         "parameters": {"$ref": "#/shared/fast", "points": [{"$ref": "#/shared/three"}]},
-         "targets": {"main": "fixed"}}
-    ],
-    "outputs": ["contrast.main", "fixed"]
-})";
-
-[[nodiscard]] Scene parse(const std::string& text, const std::vector<SceneOverride>& overrides = {}) {
-    return parse_scene(text, "scenes/a.json", overrides);
-}
-
-/// What the error says; every fault of a scene comes as Error(scene).
-[[nodiscard]] std::string error_of(const std::string& text,
-                                   const std::vector<SceneOverride>& overrides = {}) {
-    try {
-        (void)parse(text, overrides);
-    } catch (const Error& error) {
-        EXPECT_EQ(error.code(), ErrorCode::scene);
-        EXPECT_EQ(error.where(), "scenes/a.json");
-        return error.what();
-    }
-    return "no error";
-}
-
-/// The valid scene with the value at a pointer replaced (null: removed).
-[[nodiscard]] std::string with(const std::string& pointer, const json& value) {
-    json document = json::parse(valid);
-    document[json::json_pointer(pointer)] = value;
-    return document.dump();
-}
-
-[[nodiscard]] std::string without(const std::string& pointer) {
-    json document = json::parse(valid);
-    const json::json_pointer place(pointer);
-    document[place.parent_pointer()].erase(place.back());
-    return document.dump();
-}
-
 TEST(ParseScene, ReadsAScene) {
-    const Scene scene = parse(valid);
+    const Scene scene = parse(valid_scene);
     EXPECT_EQ(scene.file, "scenes/a.json");
     EXPECT_EQ(scene.name, "two passes");
     EXPECT_EQ(scene.width, 640);
@@ -111,7 +53,7 @@ TEST(ParseScene, ReadsAScene) {
 }
 
 TEST(ParseScene, ExpandsReferences) {
-    const Scene scene = parse(valid);
+    const Scene scene = parse(valid_scene);
     EXPECT_EQ(scene.passes[0].parameters,
               json::parse(R"({"rate": 4, "mesh": "../meshes/a.glb", "points": [1, 2]})"));
     EXPECT_EQ(scene.passes[1].parameters,
@@ -130,16 +72,16 @@ TEST(ParseScene, HasDefaults) {
 }
 
 TEST(ParseScene, HashFollowsTheContentOnly) {
-    const std::string hash = parse(valid).hash;
+    const std::string hash = parse(valid_scene).hash;
     EXPECT_EQ(hash.size(), 16U);
     EXPECT_EQ(hash.find_first_not_of("0123456789abcdef"), std::string::npos);
-    EXPECT_EQ(parse(json::parse(valid).dump(8)).hash, hash) << "layout does not matter";
-    EXPECT_NE(parse(valid, {{"/time_s", 3.0}}).hash, hash);
+    EXPECT_EQ(parse(json::parse(valid_scene).dump(8)).hash, hash) << "layout does not matter";
+    EXPECT_NE(parse(valid_scene, {{"/time_s", 3.0}}).hash, hash);
     EXPECT_NE(parse(with("/name", "other")).hash, hash);
 }
 
 TEST(ParseScene, ToleratesAByteOrderMark) {
-    EXPECT_EQ(parse("\xEF\xBB\xBF" + std::string(valid)).hash, parse(valid).hash);
+    EXPECT_EQ(parse("\xEF\xBB\xBF" + std::string(valid_scene)).hash, parse(valid_scene).hash);
 }
 
 TEST(ParseScene, SyntaxErrorsHaveLineAndColumn) {
@@ -190,7 +132,7 @@ TEST(ParseScene, BoundsDepthAndSize) {
 }
 
 TEST(ParseScene, ReferencesCannotRunAway) {
-    json document = json::parse(valid);
+    json document = json::parse(valid_scene);
     document["shared"] = {{"a0", 1}};
     for (int i = 1; i < 40; ++i) {
         const json part{{"$ref", "#/shared/a" + std::to_string(i - 1)}};
@@ -198,7 +140,7 @@ TEST(ParseScene, ReferencesCannotRunAway) {
     }
     document["passes"][0]["parameters"] = {{"x", {{"$ref", "#/shared/a39"}}}};
     EXPECT_THAT(error_of(document.dump()), HasSubstr("/passes/0/parameters/x"));
-    json chain = json::parse(valid);
+    json chain = json::parse(valid_scene);
     for (int i = 0; i < 100'000; ++i) {
         chain["shared"]["b" + std::to_string(i)] = {{"$ref", "#/shared/b" + std::to_string(i + 1)}};
     }
@@ -300,7 +242,7 @@ TEST(ParseScene, NamesEachFault) {
 }
 
 TEST(ParseScene, ListsAllFaultsOnePerLine) {
-    json document = json::parse(valid);
+    json document = json::parse(valid_scene);
     document["version"] = 7;
     document["a\nb"] = 1;
     document["passes"][1]["effect"] = false;
@@ -313,7 +255,7 @@ TEST(ParseScene, ListsAllFaultsOnePerLine) {
 }
 
 TEST(ParseScene, BoundsTheListOfFaults) {
-    json document = json::parse(valid);
+    json document = json::parse(valid_scene);
     for (int i = 0; i < 150; ++i) {
         document["unknown" + std::to_string(i)] = i;
     }
@@ -323,14 +265,14 @@ TEST(ParseScene, BoundsTheListOfFaults) {
 }
 
 TEST(Overrides, ChangeAndAdd) {
-    const Scene scene = parse(valid, {{"/time_s", 9},
-                                      {"/camera/near_mm", 2},
-                                      {"/passes/1/parameters/rate", 11},
-                                      {"/shared/three", 33},
-                                      {"/outputs/-", "extra"},
-                                      {"/outputs/0", "fixed2"},
-                                      {"/targets/new.one", json::object()},
-                                      {"/targets/new.one/format", "r8"}});
+    const Scene scene = parse(valid_scene, {{"/time_s", 9},
+                                            {"/camera/near_mm", 2},
+                                            {"/passes/1/parameters/rate", 11},
+                                            {"/shared/three", 33},
+                                            {"/outputs/-", "extra"},
+                                            {"/outputs/0", "fixed2"},
+                                            {"/targets/new.one", json::object()},
+                                            {"/targets/new.one/format", "r8"}});
     EXPECT_EQ(scene.time_s, 9.0);
     EXPECT_EQ(scene.camera.near_mm, 2.0);
     EXPECT_EQ(scene.passes[1].parameters["rate"], 11);
@@ -340,15 +282,16 @@ TEST(Overrides, ChangeAndAdd) {
 }
 
 TEST(Overrides, NameWhatDoesNotExist) {
-    EXPECT_THAT(error_of(valid, {{"/camra/near_mm", 2}}), HasSubstr("/camra/near_mm: cannot be set"));
-    EXPECT_THAT(error_of(valid, {{"/passes/7/enabled", true}}),
+    EXPECT_THAT(error_of(valid_scene, {{"/camra/near_mm", 2}}), HasSubstr("/camra/near_mm: cannot be set"));
+    EXPECT_THAT(error_of(valid_scene, {{"/passes/7/enabled", true}}),
                 HasSubstr("/passes/7/enabled: cannot be set"));
-    EXPECT_THAT(error_of(valid, {{"/outputs/3", "x"}}), HasSubstr("/outputs/3: cannot be set"));
-    EXPECT_THAT(error_of(valid, {{"/outputs/x", "x"}}), HasSubstr("/outputs/x: cannot be set"));
-    EXPECT_THAT(error_of(valid, {{"/time_s/x", 1}}), HasSubstr("/time_s/x: cannot be set"));
-    EXPECT_THAT(error_of(valid, {{"", 1}}), HasSubstr("not a pointer"));
-    EXPECT_THAT(error_of(valid, {{"time_s", 1}}), HasSubstr("not a pointer"));
-    EXPECT_THAT(error_of(valid, {{"/time", 1}}), HasSubstr("/time: unknown key; did you mean \"time_s\"?"));
+    EXPECT_THAT(error_of(valid_scene, {{"/outputs/3", "x"}}), HasSubstr("/outputs/3: cannot be set"));
+    EXPECT_THAT(error_of(valid_scene, {{"/outputs/x", "x"}}), HasSubstr("/outputs/x: cannot be set"));
+    EXPECT_THAT(error_of(valid_scene, {{"/time_s/x", 1}}), HasSubstr("/time_s/x: cannot be set"));
+    EXPECT_THAT(error_of(valid_scene, {{"", 1}}), HasSubstr("not a pointer"));
+    EXPECT_THAT(error_of(valid_scene, {{"time_s", 1}}), HasSubstr("not a pointer"));
+    EXPECT_THAT(error_of(valid_scene, {{"/time", 1}}),
+                HasSubstr("/time: unknown key; did you mean \"time_s\"?"));
 }
 
 TEST(Overrides, AreParsedFromText) {
@@ -393,10 +336,10 @@ class SceneFiles : public testing::Test {
 };
 
 TEST_F(SceneFiles, AreLoaded) {
-    const std::filesystem::path file = write("a.json", valid);
+    const std::filesystem::path file = write("a.json", valid_scene);
     const Scene scene = load_scene(file);
     EXPECT_EQ(scene.file, file);
-    EXPECT_EQ(scene.hash, parse(valid).hash);
+    EXPECT_EQ(scene.hash, parse(valid_scene).hash);
     const std::vector<SceneOverride> overrides{{"/time_s", 7}};
     EXPECT_EQ(load_scene(file, overrides).time_s, 7.0);
 }
@@ -449,7 +392,7 @@ TEST_F(SceneFiles, AgreeWithTheSchema) {
     needy_shared["parameters"] = {{"$ref", "#/shared/three"}};
     int count = 0;
     for (const std::string& text :
-         {std::string(valid), without("/camera"), without("/targets"),
+         {std::string(valid_scene), without("/camera"), without("/targets"),
           with("/passes/0/parameters/rate", {{"$ref", "#/shared/three"}}),
           with("/passes/0/parameters/shift", nullptr), with("/passes/0/parameters/shift", {1, 2}),
           with("/passes/0/parameters/points", {{"$ref", "#/shared/flow/points"}, {"comment", "x"}}),
@@ -498,104 +441,6 @@ TEST_F(SceneFiles, AgreeWithTheSchema) {
         GTEST_SKIP() << "python3-jsonschema is not installed";
     }
     EXPECT_EQ(WEXITSTATUS(status), 0);
-}
-
-/// Seeded mutations of the valid scene: read, or refused with an Error, and nothing else.
-TEST(SceneFuzz, MutatedTextNeverCrashes) {
-    std::mt19937 random(20240601);
-    const auto below = [&random](std::size_t n) {
-        return std::uniform_int_distribution<std::size_t>(0, n - 1)(random);
-    };
-    const std::string alphabet(
-        "{}[]\",:0123456789.-+eE\\/$# \n\0\xFF\xC3"
-        "truefalsn",
-        41);
-    int refused = 0;
-    constexpr int rounds = 4000;
-    for (int round = 0; round < rounds; ++round) {
-        std::string text = valid;
-        for (std::size_t n = 1 + below(4); n > 0 && !text.empty(); --n) {
-            const std::size_t at = below(text.size());
-            const std::size_t length = std::min(1 + below(20), text.size() - at);
-            switch (below(4)) {
-                case 0:
-                    text[at] = alphabet[below(alphabet.size())];
-                    break;
-                case 1:
-                    text.erase(at, length);
-                    break;
-                case 2:
-                    text.insert(below(text.size()), text.substr(at, length));
-                    break;
-                default:
-                    text.resize(std::max<std::size_t>(at, 1));
-            }
-        }
-        try {
-            (void)parse(text);
-        } catch (const Error& error) {
-            ++refused;
-            EXPECT_EQ(error.code(), ErrorCode::scene);
-            EXPECT_NO_THROW((void)json(error.what()).dump()) << "the message is UTF-8";
-        }
-    }
-    EXPECT_GT(refused, rounds / 2);
-    EXPECT_LT(refused, rounds);
-}
-
-TEST(SceneFuzz, MutatedValuesNeverCrash) {
-    std::mt19937 random(7);
-    const auto below = [&random](std::size_t n) {
-        return std::uniform_int_distribution<std::size_t>(0, n - 1)(random);
-    };
-    const json flat = json::parse(valid).flatten();
-    std::vector<std::string> places;
-    for (const auto& [pointer, value] : flat.items()) {
-        for (std::string place = pointer; !place.empty(); place.resize(place.rfind('/'))) {
-            places.push_back(place);
-        }
-    }
-    const std::vector<json> values{nullptr,
-                                   true,
-                                   -1,
-                                   0,
-                                   1,
-                                   1e300,
-                                   -0.5,
-                                   1LL << 62,
-                                   "",
-                                   "x",
-                                   "contrast.main",
-                                   "../..",
-                                   json::array(),
-                                   json::object(),
-                                   {1, 2},
-                                   {{"$ref", "#/shared/fast"}},
-                                   {{"$ref", "#/shared/flow"}, {"rate", 1}},
-                                   {{"$ref", "#/shared"}},
-                                   {{"$ref", ""}}};
-    int read = 0;
-    int refused = 0;
-    for (int round = 0; round < 4000; ++round) {
-        json document = json::parse(valid);
-        for (std::size_t n = 1 + below(3); n > 0; --n) {
-            const json::json_pointer place(places[below(places.size())]);
-            if (document.contains(place)) {
-                document[place] = values[below(values.size())];
-            }
-        }
-        try {
-            const Scene scene = parse(document.dump());
-            ++read;
-            EXPECT_GT(scene.width, 0);
-            EXPECT_FALSE(scene.outputs.empty());
-        } catch (const Error& error) {
-            ++refused;
-            EXPECT_EQ(error.code(), ErrorCode::scene);
-        }
-    }
-    EXPECT_GT(read, 50);
-    EXPECT_GT(refused, 1000);
 }
 
 }  // namespace
