@@ -4,5 +4,5 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 cmake/setup.sh
 cmake --preset release >/dev/null
-cmake --build --preset release
+cmake --build --preset release --target viscera_app assets
 exec build/release/samples/viscera render assets/scenes/angiography.json -o out --dump all "$@"
