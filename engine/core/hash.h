@@ -9,7 +9,8 @@
 
 namespace viscera {
 
-/// Incremental 64-bit FNV-1a with a final mix, for content keys: equal inputs give equal keys on every machine. Not cryptographic.
+/// Incremental 64-bit FNV-1a with a final mix, for content keys: equal inputs give equal keys on every
+/// machine. Not cryptographic.
 class Hash {
   public:
     Hash& bytes(std::span<const std::byte> data) {
@@ -24,8 +25,7 @@ class Hash {
     }
     /// Any value without padding: numbers, enumerations, GLM vectors and matrices.
     template <class T>
-        requires std::is_trivially_copyable_v<T>
-    Hash& add(const T& value) {
+    requires std::is_trivially_copyable_v<T> Hash& add(const T& value) {
         return bytes(std::as_bytes(std::span(&value, 1)));
     }
     /// Never 0, so that 0 can stand for "no content".

@@ -22,9 +22,13 @@ constexpr std::array<FormatInfo, 10> formats{{
 
 }  // namespace
 
-std::span<const FormatInfo> all_formats() { return formats; }
+std::span<const FormatInfo> all_formats() {
+    return formats;
+}
 
-const FormatInfo& info(PixelFormat format) { return formats[static_cast<std::size_t>(format)]; }
+const FormatInfo& info(PixelFormat format) {
+    return formats[static_cast<std::size_t>(format)];
+}
 
 std::optional<PixelFormat> parse_format(std::string_view name) {
     for (const FormatInfo& entry : formats) {

@@ -54,7 +54,8 @@ TEST_F(RealVessels, AortaFillsAlongItsCentreline) {
                                     : network.arrival_s[a] - network.arrival_s[b];
         ASSERT_GE(step, 0.0) << "edge " << e;
     }
-    const std::vector<float> arrival = vertex_arrival(graph, network, vertex_feet(graph, meshes[0].positions), log);
+    const std::vector<float> arrival =
+        vertex_arrival(graph, network, vertex_feet(graph, meshes[0].positions), log);
     EXPECT_EQ(std::ranges::count(arrival, unreached_s), 0);
     // The front stays whole: no triangle spans more than a small part of the filling.
     std::vector<float> smooth = arrival;
