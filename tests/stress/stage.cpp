@@ -65,12 +65,13 @@ nlohmann::json Stage::chain() {
              "targets": {"source": "contrast.main", "blurred": "contrast.capillary"}},
             {"name": "composite", "effect": "contrast.composite"}
         ],
-        "outputs": ["final"]})");
+        "outputs": ["final", "contrast.distance"]})");
 }
 
 nlohmann::json Stage::per_vertex_chain() {
     nlohmann::json scene = chain();
     scene["passes"][0]["effect"] = "contrast.main";
+    scene["outputs"] = {"final"};  // this pass makes no distance map
     scene["passes"][0]["parameters"] = {
         {"vessel", {{"mesh", "tube.ply"}, {"density", "per_vertex"}, {"scalar", "density"}}}};
     return scene;
