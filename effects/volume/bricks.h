@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "engine/core/volume.h"
+
+namespace viscera::volume {
+
+/// Least and greatest stored value over each brick's voxels and a border of the filter's support: bounds of
+/// what a reconstruction filter without overshoot can give inside the brick.
+struct BrickGrid {
+    glm::ivec3 dims{0};  ///< bricks per axis: ceil(volume dims / size)
+    int size = 4;        ///< voxels per brick and axis
+    int border = 1;      ///< voxels around a brick that its range includes: 1 linear, 2 cubic
+    std::vector<float> min;
+    std::vector<float> max;
+
+    [[nodiscard]] std::size_t count() const { return min.size(); }
+};
+
+/// Ranges of one channel of a volume, in stored units as float; voxels that are not finite count as `empty`.
+/// Throws Error(usage) "cancelled".
+[[nodiscard]] BrickGrid summarise(const Volume& volume, int channel, int size, int border, float empty,
+                                  const Progress& progress = {});
+/// Makes again the bricks that a change of `box` touches (border included); gives the box of bricks made
+/// again.
+VoxelBox resummarise(BrickGrid& bricks, const Volume& volume, int channel, float empty, const VoxelBox& box);
+
+/// Stored values in which something is to be seen, ascending, ends included.
+struct StoredRange {
+    float low;
+    float high;
+};
+
+/// Which bricks can show anything: those whose [min, max] meets a range and that lie in the crop (in voxels;
+/// size 0: all). One byte a brick: 1 occupied, 0 empty.
+void find_occupied(const BrickGrid& bricks, std::span<const StoredRange> visible, const VoxelBox& crop,
+                   std::vector<std::uint8_t>& occupied);
+
+/// Signed Chebyshev distance in bricks, cut at +-`reach`: for an empty brick d > 0, all bricks nearer than d
+/// are empty too (outside the grid counts as empty); for an occupied one d < 0, all bricks nearer than -d
+/// inside the grid are occupied too. |d| >= 1. `scratch` is kept between calls so that nothing is allocated.
+struct DistanceScratch {
+    std::vector<std::uint64_t> a, b, c;
+};
+inline constexpr int distance_reach = 31;
+void signed_distance(glm::ivec3 dims, std::span<const std::uint8_t> occupied,
+                     std::vector<std::int8_t>& distance, DistanceScratch& scratch);
+
+/// Share of occupied bricks, in [0, 1].
+[[nodiscard]] double occupancy(std::span<const std::uint8_t> occupied);
+
+}  // namespace viscera::volume
