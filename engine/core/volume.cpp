@@ -1,0 +1,138 @@
+#include "engine/core/volume.h"
+
+#include <array>
+#include <cmath>
+#include <cstring>
+
+#include "engine/core/error.h"
+
+namespace viscera {
+
+namespace {
+
+struct ScalarInfo {
+    std::string_view name;
+    std::size_t bytes;
+};
+
+ScalarInfo info_of(ScalarType type) {
+    static constexpr std::array<ScalarInfo, 5> infos{
+        {{"u8", 1}, {"i8", 1}, {"u16", 2}, {"i16", 2}, {"f32", 4}}};
+    return infos.at(static_cast<std::size_t>(type));
+}
+
+template <class T>
+double load(const std::byte* bytes) {
+    T value{};
+    std::memcpy(&value, bytes, sizeof value);
+    return static_cast<double>(value);
+}
+
+std::string text_of(const glm::dvec3& v) {
+    return std::to_string(v.x) + " " + std::to_string(v.y) + " " + std::to_string(v.z);
+}
+
+bool all_finite(const glm::dvec3& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+}  // namespace
+
+std::string_view to_string(ScalarType type) {
+    return info_of(type).name;
+}
+
+std::size_t bytes_of(ScalarType type) {
+    return info_of(type).bytes;
+}
+
+std::size_t VolumeGrid::voxel_count() const {
+    return static_cast<std::size_t>(dims.x) * static_cast<std::size_t>(dims.y) *
+           static_cast<std::size_t>(dims.z);
+}
+
+glm::dmat4 VolumeGrid::index_to_world() const {
+    return {glm::dvec4(direction[0] * spacing_mm.x, 0.0), glm::dvec4(direction[1] * spacing_mm.y, 0.0),
+            glm::dvec4(direction[2] * spacing_mm.z, 0.0), glm::dvec4(origin_mm, 1.0)};
+}
+
+glm::dmat4 VolumeGrid::texture_to_world() const {
+    // index = dims * texture - 1/2
+    glm::dmat4 matrix = index_to_world();
+    matrix[3] -= 0.5 * (matrix[0] + matrix[1] + matrix[2]);
+    for (int axis = 0; axis < 3; ++axis) {
+        matrix[axis] *= static_cast<double>(dims[axis]);
+    }
+    return matrix;
+}
+
+void VolumeGrid::validate(std::string_view where) const {
+    const auto fail = [where](const std::string& message) {
+        throw Error(ErrorCode::file, std::string(where), message);
+    };
+    constexpr double most_voxels = 1152921504606846976.0;  // 2^60: sizes in bytes then fit 64 bits
+    if (dims.x < 1 || dims.y < 1 || dims.z < 1) {
+        fail("dims " + std::to_string(dims.x) + " x " + std::to_string(dims.y) + " x " +
+             std::to_string(dims.z) + ": each must be 1 or more");
+    }
+    if (static_cast<double>(dims.x) * dims.y * dims.z > most_voxels) {
+        fail("dims are beyond what any machine holds");
+    }
+    if (!all_finite(spacing_mm) || !(spacing_mm.x > 0.0 && spacing_mm.y > 0.0 && spacing_mm.z > 0.0)) {
+        fail("spacing " + text_of(spacing_mm) + ": each must be finite and more than 0 mm");
+    }
+    if (!all_finite(origin_mm)) {
+        fail("origin " + text_of(origin_mm) + " is not finite");
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+        const double length = glm::length(direction[axis]);
+        if (!(std::abs(length - 1.0) < 1e-3)) {
+            fail("direction: column " + std::to_string(axis) + " is no unit vector");
+        }
+    }
+    if (!(std::abs(glm::determinant(direction)) > 1e-6)) {
+        fail("direction is singular: its axes lie in one plane");
+    }
+}
+
+double Volume::stored(const glm::ivec3& index, int channel) const {
+    const std::size_t voxel = static_cast<std::size_t>(index.x) +
+                              static_cast<std::size_t>(grid.dims.x) *
+                                  (static_cast<std::size_t>(index.y) +
+                                   static_cast<std::size_t>(grid.dims.y) * static_cast<std::size_t>(index.z));
+    const std::size_t place = voxel * static_cast<std::size_t>(channels) + static_cast<std::size_t>(channel);
+    const std::byte* const bytes = voxels.data() + place * bytes_of(type);
+    switch (type) {
+        case ScalarType::u8:
+            return load<std::uint8_t>(bytes);
+        case ScalarType::i8:
+            return load<std::int8_t>(bytes);
+        case ScalarType::u16:
+            return load<std::uint16_t>(bytes);
+        case ScalarType::i16:
+            return load<std::int16_t>(bytes);
+        case ScalarType::f32:
+            return load<float>(bytes);
+    }
+    return 0.0;
+}
+
+void Volume::validate() const {
+    const auto fail = [this](const std::string& message) { throw Error(ErrorCode::file, source, message); };
+    grid.validate(source);
+    if (channels < 1 || channels > 4) {
+        fail("channels: " + std::to_string(channels) + " are not 1 to 4");
+    }
+    if (!std::isfinite(slope) || slope == 0.0) {
+        fail("slope " + std::to_string(slope) + " must be finite and not 0");
+    }
+    if (!std::isfinite(intercept)) {
+        fail("intercept is not finite");
+    }
+    const std::size_t due = grid.voxel_count() * static_cast<std::size_t>(channels) * bytes_of(type);
+    if (voxels.size() != due) {
+        fail("voxels: " + std::to_string(voxels.size()) + " bytes where " + std::to_string(due) + " are due");
+    }
+}
+
+}  // namespace viscera
