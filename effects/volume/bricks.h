@@ -22,12 +22,13 @@ struct BrickGrid {
     [[nodiscard]] std::size_t count() const { return min.size(); }
 };
 
-/// Ranges of one channel of a volume, in stored units as float; voxels that are not finite count as `empty`.
-/// Throws Error(usage) "cancelled".
+/// Ranges of one channel of a volume, in stored units as float; voxels that are not finite count as `empty`
+/// (finite). Progress is told after each layer of bricks. Throws Error(usage) for a channel that is not
+/// there, size < 1 or border < 0, and Error(usage) "cancelled".
 [[nodiscard]] BrickGrid summarise(const Volume& volume, int channel, int size, int border, float empty,
                                   const Progress& progress = {});
 /// Makes again the bricks that a change of `box` touches (border included); gives the box of bricks made
-/// again.
+/// again. The part of the box outside the volume is ignored.
 VoxelBox resummarise(BrickGrid& bricks, const Volume& volume, int channel, float empty, const VoxelBox& box);
 
 /// Stored values in which something is to be seen, ascending, ends included.
@@ -36,18 +37,27 @@ struct StoredRange {
     float high;
 };
 
-/// Which bricks can show anything: those whose [min, max] meets a range and that lie in the crop (in voxels;
-/// size 0: all). One byte a brick: 1 occupied, 0 empty.
+/// How far a Catmull-Rom filter can leave the range of the 4 x 4 x 4 voxels it weighs, as a share of that
+/// range. Its weights along one axis add up to 1 and their magnitudes to at most 5/4 (half-way between two
+/// voxels), so that the negative weights of three axes add up to at most ((5/4)^3 - 1) / 2.
+inline constexpr float catmull_rom_overshoot = 0.4765625F;
+
+/// Which bricks can show anything: those whose [min, max] meets a range and that share a voxel with the crop
+/// (in voxels; size 0 along all axes: everything, along some: nothing). [min, max] grows at both ends by
+/// `overshoot` * (max - min) first: 0 for filters that weigh with positive weights only. One byte a brick:
+/// 1 occupied, 0 empty.
 void find_occupied(const BrickGrid& bricks, std::span<const StoredRange> visible, const VoxelBox& crop,
-                   std::vector<std::uint8_t>& occupied);
+                   std::vector<std::uint8_t>& occupied, float overshoot = 0.0F);
 
 /// Signed Chebyshev distance in bricks, cut at +-`reach`: for an empty brick d > 0, all bricks nearer than d
 /// are empty too (outside the grid counts as empty); for an occupied one d < 0, all bricks nearer than -d
 /// inside the grid are occupied too. |d| >= 1. `scratch` is kept between calls so that nothing is allocated.
 struct DistanceScratch {
-    std::vector<std::uint64_t> a, b, c;
+    std::vector<std::uint8_t> to_occupied, to_empty, row;
 };
 inline constexpr int distance_reach = 31;
+/// `occupied`: one byte a brick, 0 or 1, x fastest. Throws Error(usage) when its size is not that of the
+/// grid.
 void signed_distance(glm::ivec3 dims, std::span<const std::uint8_t> occupied,
                      std::vector<std::int8_t>& distance, DistanceScratch& scratch);
 

@@ -1,0 +1,325 @@
+#include "effects/volume/bricks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <string>
+#include <type_traits>
+
+#include "engine/core/error.h"
+
+namespace viscera::volume {
+namespace {
+
+std::size_t at(const glm::ivec3& index, const glm::ivec3& dims) {
+    return static_cast<std::size_t>(index.x) +
+           static_cast<std::size_t>(dims.x) *
+               (static_cast<std::size_t>(index.y) +
+                static_cast<std::size_t>(dims.y) * static_cast<std::size_t>(index.z));
+}
+
+/// Lower each element of `low` and raise each of `high` to the values beside them. Rows instead of single
+/// bricks, so that the compiler makes vector code of it.
+template <typename T>
+void widen(std::size_t count, const T* smaller, const T* greater, T* low, T* high) {
+    for (std::size_t i = 0; i < count; ++i) {
+        low[i] = std::min(low[i], smaller[i]);
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+        high[i] = std::max(high[i], greater[i]);
+    }
+}
+
+/// One channel of `row.size()` voxels that lie side by side from `first` on.
+template <typename T>
+void load_row(const Volume& volume, const glm::ivec3& first, int channel, float empty, std::vector<T>& row) {
+    const auto channels = static_cast<std::size_t>(volume.channels);
+    const std::byte* source =
+        volume.voxels.data() +
+        (at(first, volume.grid.dims) * channels + static_cast<std::size_t>(channel)) * sizeof(T);
+    if (channels == 1) {
+        std::memcpy(row.data(), source, row.size() * sizeof(T));
+    } else {
+        for (std::size_t i = 0; i < row.size(); ++i) {
+            std::memcpy(&row[i], source + i * channels * sizeof(T), sizeof(T));
+        }
+    }
+    if constexpr (std::is_floating_point_v<T>) {
+        for (T& value : row) {
+            value = std::abs(value) <= std::numeric_limits<T>::max() ? value : empty;
+        }
+    }
+}
+
+/// Ranges of the bricks of a box, axis by axis: slices of a layer into a plane, lines of the plane into a
+/// line, voxels of the line into bricks.
+template <typename T>
+void summarise_as(BrickGrid& bricks, const Volume& volume, int channel, float empty, const VoxelBox& box,
+                  const Progress& progress) {
+    const auto first_voxel = [&](const glm::ivec3& brick) {
+        return glm::max(brick * bricks.size - bricks.border, glm::ivec3(0));
+    };
+    const auto end_voxel = [&](const glm::ivec3& brick) {
+        return glm::min((brick + 1) * bricks.size + bricks.border, volume.grid.dims);
+    };
+    const glm::ivec3 end_brick = box.first + box.size;
+    const glm::ivec3 first = first_voxel(box.first);
+    const glm::ivec3 end = end_voxel(end_brick - 1);
+    const auto width = static_cast<std::size_t>(end.x - first.x);
+    const std::size_t area = width * static_cast<std::size_t>(end.y - first.y);
+    constexpr T greatest = std::numeric_limits<T>::max();
+    constexpr T least = std::numeric_limits<T>::lowest();
+    std::vector<T> row(width);
+    std::vector<T> plane_low(area);
+    std::vector<T> plane_high(area);
+    std::vector<T> line_low(width);
+    std::vector<T> line_high(width);
+
+    glm::ivec3 brick;
+    for (brick.z = box.first.z; brick.z < end_brick.z; ++brick.z) {
+        std::fill(plane_low.begin(), plane_low.end(), greatest);
+        std::fill(plane_high.begin(), plane_high.end(), least);
+        for (int z = first_voxel(brick).z; z < end_voxel(brick).z; ++z) {
+            for (int y = first.y; y < end.y; ++y) {
+                load_row(volume, {first.x, y, z}, channel, empty, row);
+                const std::size_t begin = width * static_cast<std::size_t>(y - first.y);
+                widen(width, row.data(), row.data(), &plane_low[begin], &plane_high[begin]);
+            }
+        }
+        for (brick.y = box.first.y; brick.y < end_brick.y; ++brick.y) {
+            std::fill(line_low.begin(), line_low.end(), greatest);
+            std::fill(line_high.begin(), line_high.end(), least);
+            for (int y = first_voxel(brick).y; y < end_voxel(brick).y; ++y) {
+                const std::size_t begin = width * static_cast<std::size_t>(y - first.y);
+                widen(width, &plane_low[begin], &plane_high[begin], line_low.data(), line_high.data());
+            }
+            for (brick.x = box.first.x; brick.x < end_brick.x; ++brick.x) {
+                const int begin = first_voxel(brick).x - first.x;
+                const int stop = end_voxel(brick).x - first.x;
+                const std::size_t i = at(brick, bricks.dims);
+                bricks.min[i] =
+                    static_cast<float>(*std::min_element(line_low.begin() + begin, line_low.begin() + stop));
+                bricks.max[i] = static_cast<float>(
+                    *std::max_element(line_high.begin() + begin, line_high.begin() + stop));
+            }
+        }
+        if (progress && !progress((brick.z + 1 - box.first.z) / static_cast<double>(box.size.z))) {
+            throw Error(ErrorCode::usage, volume.source, "cancelled");
+        }
+    }
+}
+
+void summarise_box(BrickGrid& bricks, const Volume& volume, int channel, float empty, const VoxelBox& box,
+                   const Progress& progress) {
+    switch (volume.type) {
+        case ScalarType::u8:
+            return summarise_as<std::uint8_t>(bricks, volume, channel, empty, box, progress);
+        case ScalarType::i8:
+            return summarise_as<std::int8_t>(bricks, volume, channel, empty, box, progress);
+        case ScalarType::u16:
+            return summarise_as<std::uint16_t>(bricks, volume, channel, empty, box, progress);
+        case ScalarType::i16:
+            return summarise_as<std::int16_t>(bricks, volume, channel, empty, box, progress);
+        case ScalarType::f32:
+            return summarise_as<float>(bricks, volume, channel, empty, box, progress);
+    }
+}
+
+/// Which of some bricks meet a range.
+void mark_visible(std::span<const float> min, std::span<const float> max,
+                  std::span<const StoredRange> visible, float overshoot, std::span<std::uint8_t> occupied) {
+    for (const StoredRange& range : visible) {
+        for (std::size_t i = 0; i < occupied.size(); ++i) {
+            const float beyond = overshoot * (max[i] - min[i]);
+            const auto below = static_cast<unsigned>(min[i] - beyond <= range.high);
+            const auto above = static_cast<unsigned>(max[i] + beyond >= range.low);
+            occupied[i] = static_cast<std::uint8_t>(occupied[i] | (below & above));
+        }
+    }
+}
+
+/// Distances of a grid with a margin around it, in which every brick is as far as can be told: no neighbour
+/// then needs a test of whether it exists.
+class DistanceGrid {
+  public:
+    /// As wide as a row's longest step below, in bytes.
+    static constexpr int margin_x = 16;
+
+    DistanceGrid(const glm::ivec3& dims, std::vector<std::uint8_t>& values, std::vector<std::uint8_t>& row)
+        : dims_(dims), stride_(dims.x + 2 * margin_x), values_(values), row_(row) {
+        values_.assign(static_cast<std::size_t>(stride_) * static_cast<std::size_t>(dims.y + 2) *
+                           static_cast<std::size_t>(dims.z + 2),
+                       distance_reach);
+        row_.assign(2 * static_cast<std::size_t>(stride_), distance_reach);
+    }
+
+    /// Row of bricks, without its margin.
+    [[nodiscard]] std::uint8_t* row(int y, int z) const {
+        const std::ptrdiff_t line = y + 1 + static_cast<std::ptrdiff_t>(dims_.y + 2) * (z + 1);
+        return values_.data() + line * stride_ + margin_x;
+    }
+
+    /// Spreads the distances from the bricks where they are 0. A shortest path of Chebyshev steps may take
+    /// its steps in any order: first those along its row, then those forward through memory, then those
+    /// back. So one pass each finds it.
+    void spread() const {
+        for (int z = 0; z < dims_.z; ++z) {
+            for (int y = 0; y < dims_.y; ++y) {
+                spread_along(row(y, z));
+                approach(row(y, z), {row(y - 1, z), row(y - 1, z - 1), row(y, z - 1), row(y + 1, z - 1)});
+            }
+        }
+        for (int z = dims_.z - 1; z >= 0; --z) {
+            for (int y = dims_.y - 1; y >= 0; --y) {
+                approach(row(y, z), {row(y + 1, z), row(y + 1, z + 1), row(y, z + 1), row(y - 1, z + 1)});
+            }
+        }
+    }
+
+  private:
+    struct Neighbours {
+        const std::uint8_t *a, *b, *c, *d;
+    };
+
+    /// Lets the bricks of a row know how near the others of the row are: steps of 1, 2, 4, 8 and 16 in both
+    /// directions reach as far as is told, a whole row at a time.
+    void spread_along(std::uint8_t* row) const {
+        const int count = dims_.x;
+        std::uint8_t* now = row_.data() + margin_x;
+        std::uint8_t* next = now + stride_;
+        std::copy_n(row, count, now);
+        for (int step = 1; step <= margin_x; step *= 2) {
+            const std::uint8_t* before = now - step;
+            const std::uint8_t* after = now + step;
+            for (int x = 0; x < count; ++x) {
+                const auto side = static_cast<std::uint8_t>(std::min(before[x], after[x]) + step);
+                next[x] = std::min(now[x], side);
+            }
+            std::swap(now, next);
+        }
+        std::copy_n(now, count, row);
+    }
+
+    /// Lets a row know how near its neighbour rows are.
+    void approach(std::uint8_t* row, const Neighbours& near) const {
+        const int count = dims_.x;
+        std::uint8_t* nearest = row_.data() + margin_x;
+        for (int x = -1; x <= count; ++x) {
+            nearest[x] = std::min(std::min(near.a[x], near.b[x]), std::min(near.c[x], near.d[x]));
+        }
+        for (int x = 0; x < count; ++x) {
+            const std::uint8_t beside = std::min(std::min(nearest[x - 1], nearest[x + 1]), nearest[x]);
+            row[x] = std::min(row[x], static_cast<std::uint8_t>(beside + 1));
+        }
+    }
+
+    glm::ivec3 dims_;
+    int stride_;
+    std::vector<std::uint8_t>& values_;
+    std::vector<std::uint8_t>& row_;  ///< two rows to work in, with their margins
+};
+static_assert(2 * DistanceGrid::margin_x > distance_reach);
+
+}  // namespace
+
+BrickGrid summarise(const Volume& volume, int channel, int size, int border, float empty,
+                    const Progress& progress) {
+    if (channel < 0 || channel >= volume.channels) {
+        throw Error(ErrorCode::usage, volume.source, "there is no channel " + std::to_string(channel));
+    }
+    if (size < 1 || border < 0) {
+        throw Error(ErrorCode::usage, volume.source,
+                    "bricks need a size of 1 or more and no negative border");
+    }
+    BrickGrid bricks{.dims = (volume.grid.dims + size - 1) / size, .size = size, .border = border};
+    const std::size_t count = at(bricks.dims - 1, bricks.dims) + 1;
+    bricks.min.resize(count);
+    bricks.max.resize(count);
+    summarise_box(bricks, volume, channel, empty, {glm::ivec3(0), bricks.dims}, progress);
+    return bricks;
+}
+
+VoxelBox resummarise(BrickGrid& bricks, const Volume& volume, int channel, float empty, const VoxelBox& box) {
+    const glm::ivec3 first = glm::max(box.first, glm::ivec3(0));
+    const glm::ivec3 last = glm::min(box.first + box.size, volume.grid.dims) - 1;
+    if (glm::any(glm::lessThan(last, first))) {
+        return {};
+    }
+    const glm::ivec3 first_brick = glm::max(first - bricks.border, glm::ivec3(0)) / bricks.size;
+    const glm::ivec3 last_brick = glm::min((last + bricks.border) / bricks.size, bricks.dims - 1);
+    const VoxelBox touched{first_brick, last_brick - first_brick + 1};
+    summarise_box(bricks, volume, channel, empty, touched, {});
+    return touched;
+}
+
+void find_occupied(const BrickGrid& bricks, std::span<const StoredRange> visible, const VoxelBox& crop,
+                   std::vector<std::uint8_t>& occupied, float overshoot) {
+    occupied.assign(bricks.count(), 0);
+    glm::ivec3 first(0);
+    glm::ivec3 end = bricks.dims;
+    if (crop.size != glm::ivec3(0)) {
+        first = glm::max(crop.first, glm::ivec3(0)) / bricks.size;
+        end = glm::min((crop.first + crop.size + bricks.size - 1) / bricks.size, bricks.dims);
+        if (glm::any(glm::lessThanEqual(crop.size, glm::ivec3(0)))) {
+            return;
+        }
+    }
+    if (glm::any(glm::lessThanEqual(end, first))) {
+        return;
+    }
+    const auto width = static_cast<std::size_t>(end.x - first.x);
+    for (int z = first.z; z < end.z; ++z) {
+        for (int y = first.y; y < end.y; ++y) {
+            const std::size_t begin = at({first.x, y, z}, bricks.dims);
+            mark_visible({&bricks.min[begin], width}, {&bricks.max[begin], width}, visible, overshoot,
+                         {&occupied[begin], width});
+        }
+    }
+}
+
+void signed_distance(glm::ivec3 dims, std::span<const std::uint8_t> occupied,
+                     std::vector<std::int8_t>& distance, DistanceScratch& scratch) {
+    const bool any = dims.x > 0 && dims.y > 0 && dims.z > 0;
+    if (occupied.size() != (any ? at(dims - 1, dims) + 1 : 0)) {
+        throw Error(ErrorCode::usage, "signed_distance", "occupancy and grid differ in size");
+    }
+    distance.resize(occupied.size());
+    if (!any) {
+        return;
+    }
+    const DistanceGrid to_occupied(dims, scratch.to_occupied, scratch.row);
+    const DistanceGrid to_empty(dims, scratch.to_empty, scratch.row);
+    const auto for_rows = [&](const auto& act) {
+        for (int z = 0; z < dims.z; ++z) {
+            for (int y = 0; y < dims.y; ++y) {
+                act(at({0, y, z}, dims), to_occupied.row(y, z), to_empty.row(y, z));
+            }
+        }
+    };
+    for_rows([&](std::size_t begin, std::uint8_t* outer, std::uint8_t* inner) {
+        for (int x = 0; x < dims.x; ++x) {
+            const bool full = occupied[begin + static_cast<std::size_t>(x)] != 0;
+            outer[x] = full ? 0 : distance_reach;
+            inner[x] = full ? distance_reach : 0;
+        }
+    });
+    to_occupied.spread();
+    to_empty.spread();
+    // One of the two is 0.
+    for_rows([&](std::size_t begin, const std::uint8_t* outer, const std::uint8_t* inner) {
+        for (int x = 0; x < dims.x; ++x) {
+            distance[begin + static_cast<std::size_t>(x)] = static_cast<std::int8_t>(outer[x] - inner[x]);
+        }
+    });
+}
+
+double occupancy(std::span<const std::uint8_t> occupied) {
+    std::size_t count = 0;
+    for (const std::uint8_t brick : occupied) {
+        count += brick != 0 ? 1U : 0U;
+    }
+    return occupied.empty() ? 0.0 : static_cast<double>(count) / static_cast<double>(occupied.size());
+}
+
+}  // namespace viscera::volume
