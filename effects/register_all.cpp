@@ -8,6 +8,7 @@
 #include "effects/contrast/summarize_effect.h"
 #include "effects/filter/gaussian_effect.h"
 #include "effects/picture/image_effect.h"
+#include "effects/volume/ray_cast_effect.h"
 
 namespace viscera {
 
@@ -35,6 +36,8 @@ void register_all(Registry& registry) {
                  [] { return std::make_unique<CompositeEffect>(); });
     registry.add("contrast.distance_view", "The distance map in colours for inspection.",
                  [] { return std::make_unique<DistanceViewEffect>(); });
+    registry.add("volume.ray_cast", "A volume, by a ray for each pixel.",
+                 [] { return std::make_unique<volume::RayCastEffect>(); });
     registry.add("filter.gaussian", "One direction of a Gaussian blur.",
                  [] { return std::make_unique<filter::GaussianEffect>(); });
     registry.add("picture.image", "A picture file as a target.",

@@ -10,6 +10,7 @@
 #include "engine/gl/mesh.h"
 #include "engine/gl/texture.h"
 #include "engine/runtime/pass.h"
+#include "engine/runtime/region.h"
 
 namespace viscera::contrast {
 namespace {

@@ -4,6 +4,7 @@
 #include "engine/gl/mesh.h"
 #include "engine/io/mesh.h"
 #include "engine/runtime/pass.h"
+#include "engine/runtime/region.h"
 
 namespace viscera::contrast {
 

@@ -51,9 +51,4 @@ struct Vessel {
 /// parameters. Throws Error.
 [[nodiscard]] std::shared_ptr<const Vessel> load_vessel(Assets& assets, const VesselParams& params);
 
-/// The part of a target [pixels] that a box can cover, one pixel of margin included; all of it when the box
-/// reaches behind the eye; empty when it lies outside the view.
-[[nodiscard]] PixelRect project_bounds(const Bounds& bounds, const glm::dmat4& view_projection,
-                                       glm::ivec2 size);
-
 }  // namespace viscera::contrast

@@ -70,7 +70,8 @@ class Effect {
     virtual void validate() const {}
     /// Ports under the present parameters.
     [[nodiscard]] virtual std::vector<Port> ports() const = 0;
-    /// Every program that draw() may use under any parameters, so that all can be validated without a GPU.
+    /// Every program that draw() may use under the present parameters, so that all can be validated without a
+    /// GPU.
     [[nodiscard]] virtual std::span<const ProgramDesc> programs() const = 0;
     /// What there is to do this frame. No OpenGL. Reads no asset unless something is to be drawn.
     [[nodiscard]] virtual Work prepare(Prepare& prepare) = 0;

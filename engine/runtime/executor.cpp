@@ -99,13 +99,24 @@ void Executor::set_plan(Plan plan, std::vector<ImportedTarget> imported, SceneEf
             const auto port = std::ranges::find(state.ports, binding.port, &Port::name);
             state.port_of_binding.push_back(static_cast<std::size_t>(port - state.ports.begin()));
         }
-        for (const ProgramDesc& program : state.effect->programs()) {
-            state.programs.push_back(&shared_.shaders.entry(program));
-        }
+        find_programs(state);
         if (options_.timers && capabilities_.gpu_timers()) {
             state.timer = std::make_unique<gl::GpuTimer>(shared_.gl, capabilities_.software);
         }
         passes_.push_back(std::move(state));
+    }
+}
+
+void Executor::replace_effect(std::size_t pass, Effect& effect, std::uint64_t parameters_key) {
+    passes_[pass].effect = &effect;
+    passes_[pass].parameters_key = parameters_key;
+    find_programs(passes_[pass]);
+}
+
+void Executor::find_programs(PassState& state) const {
+    state.programs.clear();
+    for (const ProgramDesc& program : state.effect->programs()) {
+        state.programs.push_back(&shared_.shaders.entry(program));
     }
 }
 

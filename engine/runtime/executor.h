@@ -32,10 +32,7 @@ class Executor {
     void set_plan(Plan plan, std::vector<ImportedTarget> imported, SceneEffects& effects);
     /// Takes another effect of the same kind and ports for a pass: its parameters have changed. All that is
     /// held stays.
-    void replace_effect(std::size_t pass, Effect& effect, std::uint64_t parameters_key) {
-        passes_[pass].effect = &effect;
-        passes_[pass].parameters_key = parameters_key;
-    }
+    void replace_effect(std::size_t pass, Effect& effect, std::uint64_t parameters_key);
 
     /// Draws one frame and fills the report's passes. On an exception nothing counts as held any more.
     void run(const Frame& frame, FrameReport& report);
@@ -65,6 +62,7 @@ class Executor {
         Work work;
     };
 
+    void find_programs(PassState& state) const;
     void prepare(const Frame& frame, FrameReport& report);
     void draw(const Frame& frame, std::size_t pass);
     void settle(const Settlement& settlement);

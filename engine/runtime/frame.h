@@ -10,6 +10,7 @@
 
 #include "engine/core/camera.h"
 #include "engine/core/pixel_format.h"
+#include "engine/core/volume.h"
 
 namespace viscera {
 
@@ -55,6 +56,12 @@ struct ImportedTexture {
         0;  ///< changed by the host whenever the content has changed; 0: changes every frame
 };
 
+/// A volume that the host shows and changes, known to scenes by its name.
+struct HostVolume {
+    std::string_view name;
+    const LiveVolume* volume = nullptr;
+};
+
 /// Who puts OpenGL state back after a frame.
 enum class HostStatePolicy {
     restore,      ///< viscera saves and restores every state row it may touch
@@ -81,6 +88,7 @@ struct Frame {
     int eye_count = 1;  ///< 1, or 2 (left, right)
     const HostValues* values = nullptr;
     std::span<const ImportedTexture> imported;
+    std::span<const HostVolume> volumes;
     Present present;
     HostStatePolicy host_state = HostStatePolicy::restore;
 

@@ -1,0 +1,91 @@
+#include "effects/volume/ray_cast_params.h"
+
+#include <array>
+
+namespace viscera::volume {
+namespace {
+
+constexpr std::array<std::string_view, 5> function_names{"composite", "mip", "minip", "average", "xray"};
+constexpr std::array<std::string_view, 2> scheme_names{"midpoint", "gauss"};
+
+}  // namespace
+
+std::span<const std::string_view> choice_names(RayFunction) {
+    return function_names;
+}
+std::span<const std::string_view> choice_names(Scheme) {
+    return scheme_names;
+}
+
+void TransferParams::visit(ParamVisitor& v) {
+    v.field({.name = "points", .doc = "Knots by value; linear between them, constant beyond them."}, points);
+    v.field({.name = "gradient", .doc = "Factor on the opacity by gradient magnitude."}, gradient);
+    v.field({.name = "reference_length_mm",
+             .doc = "Length that the opacities are given for.",
+             .unit = "mm",
+             .min = 0.0,
+             .min_excluded = true},
+            reference_length_mm);
+    v.field({.name = "file",
+             .doc = "Transfer function of 3D Slicer (.vp, .vp.json), ParaView (.json) or viscera (.json), "
+                    "instead of "
+                    "points."},
+            file);
+    v.field(
+        {.name = "preset",
+         .doc = "Name of one preset in the file, or a window for CT (ct-bone, ...) when there is no file."},
+        preset);
+    v.field({.name = "window", .doc = "Grey ramp instead of points."}, window);
+    v.field({.name = "range", .doc = "Stretches a file's knots from their own range to these two values."},
+            range);
+    v.field({.name = "entries", .doc = "Entries of the table on the GPU.", .min = 2, .max = 16384}, entries);
+    v.field({.name = "interpolate",
+             .doc = "Interpolates between the table's entries: exact for steep ramps, at a second fetch."},
+            interpolate);
+}
+
+void SamplingParams::visit(ParamVisitor& v) {
+    v.field({.name = "step",
+             .doc = "Mean distance of samples in units of the smallest voxel spacing.",
+             .unit = "voxel",
+             .min = 0.0,
+             .min_excluded = true},
+            step);
+    v.field({.name = "scheme", .doc = "How a slab of the ray is integrated."}, scheme);
+    v.field({.name = "termination",
+             .doc = "A ray stops when less than this of what lies behind could still be seen; 0: never.",
+             .min = 0.0,
+             .max = 1.0},
+            termination);
+    v.field({.name = "skip", .doc = "Leaps over bricks that cannot show anything; the picture is the same."},
+            skip);
+}
+
+void CropParams::visit(ParamVisitor& v) {
+    v.field({.name = "first", .doc = "First voxel that is shown.", .unit = "voxel", .min = 0.0}, first);
+    v.field({.name = "size", .doc = "Voxels that are shown; 0: all to the end.", .unit = "voxel", .min = 0.0},
+            size);
+}
+
+void XrayParams::visit(ParamVisitor& v) {
+    v.field({.name = "water_attenuation_per_mm",
+             .doc = "Attenuation of water; that of a voxel is this times 1 + HU / 1000, never below 0.",
+             .unit = "1/mm",
+             .min = 0.0},
+            water_attenuation_per_mm);
+    v.field({.name = "incident", .doc = "Intensity in front of the volume.", .min = 0.0, .max = 65504.0},
+            incident);
+    v.field({.name = "negative", .doc = "Shows what is absorbed as bright, as films do."}, negative);
+}
+
+void RayCastParams::visit(ParamVisitor& v) {
+    v.field({.name = "volume", .doc = "The volume.", .required = true}, volume);
+    v.field({.name = "function", .doc = "What is made of the values along a ray."}, function);
+    v.field({.name = "transfer_function", .doc = "Colour and opacity over value."}, transfer_function);
+    v.field({.name = "sampling", .doc = "Where rays are sampled: time against error."}, sampling);
+    v.field({.name = "crop", .doc = "Part of the volume that is shown."}, crop);
+    v.field({.name = "xray", .doc = "Attenuation and film (xray)."}, xray);
+    v.field({.name = "threshold", .doc = "Values below it are dropped (mip, minip, average)."}, threshold);
+}
+
+}  // namespace viscera::volume

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <array>
+
+#include <glm/glm.hpp>
+
+#include "engine/core/camera.h"
+
+namespace viscera::volume {
+
+/// The rays of a picture in single precision, as glsl/volume/ray.glsl has them: a point on a plane through
+/// the volume for each pixel and the direction from the eye, both in texture coordinates. Element 0 belongs
+/// to the picture's centre, 1 and 2 are added per NDC x and y.
+struct RayFrame {
+    std::array<glm::vec3, 3> point{};
+    std::array<glm::vec3, 3> direction{};
+    std::array<glm::vec3, 3> world_direction{};
+    glm::vec2 near_far{0.0F};
+    glm::vec2 depth_to_eye{
+        0.0F};  ///< distance along the view's axis = x / (ndc z + y), orthographic: x * ndc z + y
+    float plane_depth = 0.0F;  ///< of the plane [mm]
+};
+
+/// `texture_to_world`: of the volume, not singular. Computed in double precision about the volume, so that
+/// neither a far eye nor a far volume costs digits.
+[[nodiscard]] RayFrame make_ray_frame(const View& view, const glm::dmat4& texture_to_world);
+
+}  // namespace viscera::volume

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "engine/core/params.h"
+#include "engine/core/volume.h"
+#include "engine/runtime/assets.h"
+#include "engine/runtime/frame.h"
+
+namespace viscera::volume {
+
+/// Where a volume is put: scaled and turned about its own centre, then moved.
+struct PlacementParams {
+    glm::dvec3 move_mm{0.0};
+    glm::dvec3 rotate_deg{0.0};  ///< about x, then y, then z
+    glm::dvec3 scale{1.0};       ///< negative: mirrored
+
+    void visit(ParamVisitor& v);
+};
+
+/// Which volume is shown, and where.
+struct SourceParams {
+    AssetPath file;
+    std::string host;  ///< name in Frame::volumes instead of a file
+    int reduce = 1;
+    int channel = 0;
+    PlacementParams placement;
+
+    void visit(ParamVisitor& v);
+};
+
+/// A volume with what is known of it, shared by all passes that show it.
+struct Source {
+    std::shared_ptr<const Volume> owned;  ///< from a file
+    const LiveVolume* live = nullptr;     ///< or the host's
+    VolumeStatistics statistics;
+    std::uint64_t key = 0;  ///< of the file and how it was read, or of the host's object
+
+    [[nodiscard]] const Volume& volume() const { return owned ? *owned : live->volume(); }
+    [[nodiscard]] std::uint64_t version() const { return live == nullptr ? 1 : live->version(); }
+};
+
+/// Reads the file on first use. Null when the host gives no volume of the name. Throws Error(file),
+/// Error(limit).
+[[nodiscard]] std::shared_ptr<const Source> load_source(Assets& assets, const SourceParams& params,
+                                                        const Frame& frame);
+
+/// Texture coordinates -> world with the placement. The determinant may be negative.
+[[nodiscard]] glm::dmat4 placed(const VolumeGrid& grid, const PlacementParams& placement);
+/// Whether a matrix can be inverted: finite, and no axis vanishes beside the others.
+[[nodiscard]] bool invertible(const glm::dmat4& matrix);
+
+}  // namespace viscera::volume
