@@ -11,6 +11,7 @@
 #include "engine/io/exr.h"
 #include "engine/io/mesh.h"
 #include "engine/io/png.h"
+#include "engine/io/transfer_function.h"
 #include "tests/io/sample_files.h"
 #include "tests/io/temp_folder.h"
 
@@ -115,6 +116,26 @@ void run_png(std::string_view bytes) {
     on_file("fuzz.png", bytes, [](const std::filesystem::path& file) { check_image(io::read_image(file)); });
 }
 
+void check_transfer_function(const TransferFunction& function) {
+    std::size_t faults = 0;
+    require(normalised(function, faults) == function && faults == 0, "transfer function not normalised");
+    require(!function.points.empty(), "transfer function without points");
+}
+
+void read_functions(const std::filesystem::path& file) {
+    Log log;
+    const std::vector<TransferFunction> functions = io::load_transfer_functions(file, log);
+    require(!functions.empty(), "no transfer function");
+    for (const TransferFunction& function : functions) {
+        check_transfer_function(function);
+    }
+}
+
+void run_transfer_function(std::string_view bytes) {
+    on_file("fuzz.vp", bytes, read_functions);
+    on_file("fuzz.json", bytes, read_functions);
+}
+
 /// The files a, b, c, ..., one after another with a zero byte between; the driver's log is the last of them.
 void run_shader(std::string_view bytes) {
     std::vector<std::string> files(1);
@@ -176,6 +197,20 @@ std::vector<std::string> centreline_seeds() {
     return {R"({"unit":"mm","nodes":[[0,0,0,1],[0,0,9,2],[1,2,3,4]],"edges":[[0,1],[1,2]]})"};
 }
 
+/// Each reader of the target meets the seeds of the other too, and may refuse them.
+std::vector<std::string> transfer_function_seeds() {
+    return {"1\n0\n0.8\n0.2\n0.3\n9\n4 -5 0 5 0.5\n4 0 0.5 9 1\n8 -5 0 0 1 5 1 0 0\n",
+            R"([{"Name":"a","ColorSpace":"Diverging","NanColor":[1,0,0],"RGBPoints":[0,0,0,1,1,1,0,0],)"
+            R"("Points":[0,0.2,0.3,0.4,1,0.9,0.5,0]}])",
+            R"({"volumeProperties":[{"interpolationType":"linear","components":[{"shade":true,)"
+            R"("scalarOpacityUnitDistance":2,"lighting":{"ambient":0.1},)"
+            R"("scalarOpacity":{"points":[{"x":0,"y":0,"midpoint":0.4,"sharpness":0.7},{"x":9,"y":1}]},)"
+            R"("gradientOpacity":{"points":[{"x":0,"y":0.5}]},)"
+            R"("rgbTransferFunction":{"points":[{"x":0,"color":[0,0.5,1]}]}}]}]})",
+            R"({"name":"b","technique":"mip","shaded":true,"lighting":{"diffuse":0.5},)"
+            R"("reference_length_mm":2,"points":[{"value":1,"colour":[1,0,0],"opacity":0.5}]})"};
+}
+
 std::string picture(const char* name, io::ExrCompression compression, int parts) {
     const test::TempFolder folder;
     Image image = make_image(9, 6, PixelFormat::rgba16f);
@@ -211,7 +246,7 @@ std::vector<std::string> shader_seeds() {
     return {seed};
 }
 
-constexpr std::array<Target, 10> all{{{"scene", run_scene, scene_seeds},
+constexpr std::array<Target, 11> all{{{"scene", run_scene, scene_seeds},
                                       {"gltf", run_gltf, gltf_seeds},
                                       {"vtp", run_vtp, vtp_seeds},
                                       {"ply", run_ply, ply_seeds},
@@ -220,6 +255,7 @@ constexpr std::array<Target, 10> all{{{"scene", run_scene, scene_seeds},
                                       {"centreline", run_centreline, centreline_seeds},
                                       {"exr", run_exr, exr_seeds},
                                       {"png", run_png, png_seeds},
+                                      {"transfer_function", run_transfer_function, transfer_function_seeds},
                                       {"shader", run_shader, shader_seeds}}};
 
 }  // namespace
