@@ -39,7 +39,7 @@ class Field {
           Edge edge = Edge::clamp);
     /// An analytic field and its gradient per texture unit. Without a gradient, gradient() is a central
     /// difference of 1e-6 and good to about 1e-9 of the field's range. Ray functions approximate the field
-    /// along a ray by polynomials to about 1e-14 of its range, so it should be piecewise smooth.
+    /// along a ray by polynomials to about 1e-13 of its range, so it should be piecewise smooth.
     Field(Value value, Gradient gradient, const glm::dmat4& texture_to_world = glm::dmat4(1.0));
     /// An analytic field f(p) over world coordinates [mm] in a box given by `texture_to_world`; gradient per
     /// mm.

@@ -11,6 +11,10 @@ namespace {
 
 constexpr std::size_t nodes = Polynomial::max_degree + 1;
 using Row = std::array<double, nodes>;
+/// Of an interpolant, relative to the largest value met on the ray.
+constexpr double precision = 1e-13;
+/// Interpolants tried per ray, so that a field that is nowhere smooth ends too.
+constexpr int most_interpolants = 20000;
 
 /// A line in texture or index coordinates.
 struct Line {
@@ -121,7 +125,11 @@ class Cutter {
         const double miss =
             std::max(std::abs(piece.value(-1.0) - at(s, -1.0)), std::abs(piece.value(1.0) - at(s, 1.0)));
         const double middle = 0.5 * (s.begin + s.end);
-        const bool fits = tail <= 1e-13 * scale_ && miss <= 1e-14 * scale_ + 4e-16 * nodes * scale_;
+        // The place on the ray is rounded, which makes a steep field noisy; cutting does not help there.
+        const auto [low, high] = std::ranges::minmax(values);
+        const double noise = 1e-15 * std::max(std::abs(s.begin), std::abs(s.end)) / s.length() * (high - low);
+        --budget_;
+        const bool fits = std::max(tail, miss) <= precision * scale_ + noise || budget_ < 0;
         if (fits || depth <= 0 || !(middle > s.begin && middle < s.end)) {
             return visit_(piece);
         }
@@ -137,6 +145,7 @@ class Cutter {
     Line line_;
     const PieceVisitor& visit_;
     double scale_ = 1e-300;
+    int budget_ = most_interpolants;
 };
 
 }  // namespace

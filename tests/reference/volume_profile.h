@@ -23,8 +23,9 @@ using PieceVisitor = std::function<bool(const Piece&)>;
 
 /// The field along a ray as polynomials, without a gap from begin to end. A voxel field is cut at its cells'
 /// faces and exact (degree 0 nearest, 3 trilinear, 9 tricubic). An analytic field is cut by halves, from 16
-/// equal stretches on, until a Chebyshev interpolant of degree 9 reaches 1e-14 of the largest value met;
-/// jumps and kinks are cut down to 2^-40 of the ray.
+/// equal stretches on, until a Chebyshev interpolant of degree 9 reaches 1e-13 of the largest value met,
+/// or what rounding allows; jumps and kinks are cut down to 2^-40 of the ray. At most 20000 interpolants a
+/// ray: a field that needs more is cut more coarsely at the ray's end.
 void visit_pieces(const Field& field, const Ray& ray, const Interval& interval, const PieceVisitor& visit);
 
 /// The field at a place of the ray, by Field::value.
