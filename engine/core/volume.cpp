@@ -70,7 +70,7 @@ void VolumeGrid::validate(std::string_view where) const {
     const auto fail = [where](const std::string& message) {
         throw Error(ErrorCode::file, std::string(where), message);
     };
-    constexpr double most_voxels = 1152921504606846976.0;  // 2^60: sizes in bytes then fit 64 bits
+    constexpr double most_voxels = 288230376151711744.0;  // 2^58: sizes in bytes then fit 64 bits
     if (dims.x < 1 || dims.y < 1 || dims.z < 1) {
         fail("dims " + std::to_string(dims.x) + " x " + std::to_string(dims.y) + " x " +
              std::to_string(dims.z) + ": each must be 1 or more");

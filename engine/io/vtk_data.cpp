@@ -190,17 +190,21 @@ std::string decode_base64(std::string_view text) {
     return bytes;
 }
 
-std::vector<double> decode_vtk_array(std::string_view bytes, std::string_view type,
-                                     const VtkEncoding& encoding) {
+std::string decode_vtk_bytes(std::string_view bytes, const VtkEncoding& encoding) {
     if (encoding.zlib) {
-        return widen(unpack(bytes, encoding), type, encoding.big_endian);
+        return unpack(bytes, encoding);
     }
     HeaderReader header(bytes, encoding);
     const std::size_t size = header.next();
     if (size > header.rest().size()) {
         throw std::runtime_error("an array is cut off");
     }
-    return widen(header.rest().substr(0, size), type, encoding.big_endian);
+    return std::string(header.rest().substr(0, size));
+}
+
+std::vector<double> decode_vtk_array(std::string_view bytes, std::string_view type,
+                                     const VtkEncoding& encoding) {
+    return widen(decode_vtk_bytes(bytes, encoding), type, encoding.big_endian);
 }
 
 }  // namespace viscera::io

@@ -21,6 +21,10 @@ struct VtkEncoding {
 /// encoded one after the other. Throws std::runtime_error for other characters.
 [[nodiscard]] std::string decode_base64(std::string_view text);
 
+/// Bytes of a binary array that begins with its VTK header, unpacked and as they are stored; bytes beyond its
+/// end are left alone. Throws std::runtime_error when the bytes do not hold what the header claims.
+[[nodiscard]] std::string decode_vtk_bytes(std::string_view bytes, const VtkEncoding& encoding);
+
 /// Values of a binary array that begins with its VTK header; bytes beyond its end are left alone. `type`:
 /// "Float32", "Int64", ... Throws std::runtime_error when the bytes do not hold what the header claims.
 [[nodiscard]] std::vector<double> decode_vtk_array(std::string_view bytes, std::string_view type,

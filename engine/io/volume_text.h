@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/io/volume_head.h"
+
+namespace viscera::io {
+
+// Fields of text headers. `field` names the field in errors; all throw Error(file).
+
+[[nodiscard]] std::string_view trim(std::string_view text);
+[[nodiscard]] std::string lower(std::string_view text);
+/// At most 40 characters of a text from a file, others than printable ASCII as '?': fit for a message.
+[[nodiscard]] std::string printable(std::string_view text);
+
+/// Numbers parted by white space; at least one.
+[[nodiscard]] std::vector<double> numbers_of(std::string_view text, std::string_view field,
+                                             const Reading& reading);
+[[nodiscard]] double one_number(std::string_view text, std::string_view field, const Reading& reading);
+/// A whole number within [low, high].
+[[nodiscard]] double whole_number(std::string_view text, std::string_view field, double low, double high,
+                                  const Reading& reading);
+/// Sizes of the first three axes; axes that are missing are 1.
+[[nodiscard]] glm::ivec3 dims_of(std::span<const double> sizes, std::string_view field,
+                                 const Reading& reading);
+
+/// Throws Error(file) when not even the whole folder of the file could hold the voxels packed, and
+/// Error(limit) when memory cannot: for voxels that a library reads from places of its own.
+void require_plausible(const VolumeHead& head, const Reading& reading);
+
+}  // namespace viscera::io
