@@ -1,19 +1,14 @@
 #pragma once
 
+#include "effects/volume/classification.h"
 #include "effects/volume/source.h"
 #include "engine/gl/texture.h"
 
 namespace viscera::volume {
 
-/// How a stored number comes back from a texture fetch: stored = scale * texel + offset. Integers are
-/// uploaded as 16 bits, 8-bit ones as 257 n: filtering 8-bit textures is quantised to 8 bits on some devices.
-struct TexelMap {
-    double scale = 1.0;
-    double offset = 0.0;
-
-    [[nodiscard]] double texel(double stored) const { return (stored - offset) / scale; }
-    [[nodiscard]] double stored(double texel) const { return scale * texel + offset; }
-};
+/// How a stored number comes back from a texture fetch: the `value` of this map is the stored number.
+/// Integers are uploaded as 16 bits, 8-bit ones as 257 n: filtering 8-bit textures is quantised to 8 bits on
+/// some devices.
 [[nodiscard]] TexelMap texel_map(ScalarType type);
 
 /// The texels of one channel of a box as the texture wants them: 16-bit, or floats with `empty` (stored) for
