@@ -8,6 +8,9 @@
 #include "assets/generate/thorax.h"
 #include "assets/generate/tube.h"
 #include "assets/generate/vessel_mesh.h"
+#include "assets/generate/volume_angiogram.h"
+#include "assets/generate/volume_files.h"
+#include "assets/generate/volume_head.h"
 #include "assets/generate/write_file.h"
 #include "assets/generate/write_glb.h"
 
@@ -55,10 +58,19 @@ void generate_images(const std::filesystem::path& folder, std::uint64_t seed) {
     write_exr(make_thorax(ConeBeam(-30.0, -20.0), seed), folder / "images" / "thorax_rao_caudal.exr");
 }
 
-void generate_all(const std::filesystem::path& folder, std::uint64_t seed) {
+void generate_volumes(const std::filesystem::path& folder, std::uint64_t seed, int coarser) {
+    const HeadVolumes head = make_head(seed, coarser);
+    write_volume(head.ct, folder / "volumes" / "head.mha");
+    write_volume(head.labels, folder / "volumes" / "head_labels.nrrd");
+    write_volume(head.perfusion, folder / "volumes" / "overlay.nrrd");
+    write_volume(make_angiogram(seed, coarser), folder / "volumes" / "angiogram.mha");
+}
+
+void generate_all(const std::filesystem::path& folder, std::uint64_t seed, int coarser) {
     generate_vessels(folder, seed);
     generate_sprites(folder, seed);
     generate_images(folder, seed);
+    generate_volumes(folder, seed, coarser);
 }
 
 }  // namespace viscera::assets

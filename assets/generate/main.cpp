@@ -13,8 +13,8 @@ constexpr int usage_error = 2;
 int main(int argc, char** argv) {
     std::string folder = "assets";
     std::uint64_t seed = viscera::assets::default_seed;
-    CLI::App app{"Makes the meshes, centrelines, sprites and pictures that viscera's scenes use."};
-    app.add_option("folder", folder, "Where meshes/, vessels/, sprites/ and images/ go")
+    CLI::App app{"Makes the meshes, centrelines, sprites, pictures and volumes that viscera's scenes use."};
+    app.add_option("folder", folder, "Where meshes/, vessels/, sprites/, images/ and volumes/ go")
         ->capture_default_str();
     app.add_option("--seed", seed, "Another seed gives another patient")->capture_default_str();
     try {
