@@ -16,8 +16,21 @@ namespace {
 constexpr int brick_size = 4;
 constexpr int slab_limit = 30000;  // llvmpipe stops loops at 65,535 turns; skipping takes up to two a slab
 
-bool projects(RayFunction function) {
-    return function != RayFunction::composite;
+RayFunction function_for(Technique technique) {
+    switch (technique) {
+        case Technique::mip:
+            return RayFunction::mip;
+        case Technique::minip:
+            return RayFunction::minip;
+        case Technique::average:
+            return RayFunction::average;
+        case Technique::xray:
+            return RayFunction::xray;
+        case Technique::isosurface:
+        case Technique::composite:
+            break;
+    }
+    return RayFunction::composite;
 }
 
 }  // namespace
@@ -30,6 +43,7 @@ void RayCastEffect::validate() const {
     if (params_.volume.file.empty() == params_.volume.host.empty()) {
         throw Error(ErrorCode::scene, "/volume", "needs either a file or a host's volume");
     }
+    params_.transfer_function.validate();
 }
 
 std::vector<Port> RayCastEffect::ports() const {
@@ -42,25 +56,54 @@ std::vector<Port> RayCastEffect::ports() const {
 
 std::span<const ProgramDesc> RayCastEffect::programs() const {
     programs_.clear();
-    for (const bool skip : {false, true}) {
-        ProgramDesc program{"common/fullscreen.vert", "volume/ray_cast.frag", {}};
-        if (params_.function == RayFunction::composite) {
-            program.defines.emplace_back("COMPOSITE");
-            program.defines.push_back("SCHEME " + std::to_string(static_cast<int>(params_.sampling.scheme)));
-        } else {
-            program.defines.push_back("PROJECTION " + std::to_string(static_cast<int>(params_.function) - 1));
-            if (params_.threshold) {
-                program.defines.emplace_back("THRESHOLD");
+    variants_.clear();
+    // What a file's preset asks for is known when the file is read.
+    const bool by_file = !params_.function && !params_.transfer_function.file.empty();
+    const RayFunction given = params_.function.value_or(RayFunction::composite);
+    for (const RayFunction function : {RayFunction::composite, RayFunction::mip, RayFunction::minip,
+                                       RayFunction::average, RayFunction::xray}) {
+        if (!by_file && function != given) {
+            continue;
+        }
+        for (const bool skip : {false, true}) {
+            ProgramDesc program{"common/fullscreen.vert", "volume/ray_cast.frag", {}};
+            if (function == RayFunction::composite) {
+                program.defines.emplace_back("COMPOSITE");
+                program.defines.push_back("SCHEME " +
+                                          std::to_string(static_cast<int>(params_.sampling.scheme)));
+            } else {
+                program.defines.push_back("PROJECTION " + std::to_string(static_cast<int>(function) - 1));
+                if (params_.threshold) {
+                    program.defines.emplace_back("THRESHOLD");
+                }
+            }
+            if (params_.transfer_function.interpolate) {
+                program.defines.emplace_back("TRANSFER_LINEAR");
+            }
+            if (skip) {
+                program.defines.emplace_back("SKIP");
+            }
+            programs_.push_back(std::move(program));
+            variants_.push_back({function, skip});
+        }
+    }
+    // All of them again for what else may be in the picture, and as compute shaders.
+    const auto again = [&](bool Variant::*what, std::string_view define) {
+        const std::size_t count = programs_.size();
+        for (std::size_t i = 0; i < count; ++i) {
+            programs_.push_back(programs_[i]);
+            variants_.push_back(variants_[i]);
+            variants_.back().*what = true;
+            if (what == &Variant::compute) {
+                programs_.back() = {"", "", programs_[i].defines, "volume/ray_cast.comp"};
+            } else {
+                programs_.back().defines.emplace_back(define);
             }
         }
-        if (params_.transfer_function.interpolate) {
-            program.defines.emplace_back("TRANSFER_LINEAR");
-        }
-        if (skip) {
-            program.defines.emplace_back("SKIP");
-        }
-        programs_.push_back(std::move(program));
-    }
+    };
+    again(&Variant::surface, "SURFACE");
+    again(&Variant::background, "BACKGROUND");
+    again(&Variant::compute, "");
     return programs_;
 }
 
@@ -78,18 +121,29 @@ void RayCastEffect::find_crop() {
 }
 
 void RayCastEffect::find_function(Prepare& prepare) {
-    std::size_t faults = 0;
-    TransferFunction given{.points = params_.transfer_function.points,
-                           .gradient = params_.transfer_function.gradient,
-                           .reference_length_mm = params_.transfer_function.reference_length_mm};
-    if (params_.transfer_function.window) {
-        given = make_window(*params_.transfer_function.window);
+    function_ = load_function(params_.transfer_function, prepare.assets());
+    variant_.function = params_.function.value_or(function_for(function_.technique));
+}
+
+void RayCastEffect::make_table(const gl::Functions& gl, const TexelMap& stored_of_texel) {
+    const Volume& volume = source_->volume();
+    const TexelMap map{volume.slope * stored_of_texel.scale, volume.value_of(stored_of_texel.offset)};
+    TexelRange range{map.texel_of(source_->statistics.min), map.texel_of(source_->statistics.max)};
+    if (range.low > range.high) {
+        std::swap(range.low, range.high);
     }
-    function_ = normalised(std::move(given), faults);
-    if (faults > 0) {
-        prepare.log().fault("volume.transfer_function", "knots of the transfer function were out of range",
-                            faults);
+    const int entries = params_.transfer_function.entries;
+    const ExtinctionKnots knots = extinction_knots(function_, map, range);
+    ClassificationTable table = tabulate(knots, range, entries);
+    if (projects()) {  // opacity as it is: extremes and means have no length
+        for (int i = 0; i < entries; ++i) {
+            table.entries[static_cast<std::size_t>(i)] =
+                knots.evaluate(range.low + (range.high - range.low) * i / (entries - 1));
+        }
     }
+    table_.emplace(gl::Texture::make_2d(gl, entries, 1, PixelFormat::rgba32f, "transfer function"));
+    table_->upload(std::as_bytes(std::span(table.entries)));
+    table_place_ = table.place;
 }
 
 Work RayCastEffect::prepare(Prepare& prepare) {
@@ -105,6 +159,9 @@ Work RayCastEffect::prepare(Prepare& prepare) {
         find_crop();
         texture_to_world_ = placed(volume.grid, params_.volume.placement);
     }
+    if (params_.transfer_function.empty() && variant_.function != RayFunction::xray) {
+        return Work::idle("there is no transfer function");
+    }
     if (!invertible(texture_to_world_)) {
         prepare.log().fault("volume.singular", "the volume's placement is singular; it is not drawn");
         return Work::idle("the volume's placement is singular");
@@ -117,7 +174,7 @@ Work RayCastEffect::prepare(Prepare& prepare) {
         spacing = std::min(spacing, length / n[a]);
         diagonal += length;
     }
-    const bool pairs = params_.function == RayFunction::composite && params_.sampling.scheme == Scheme::gauss;
+    const bool pairs = !projects() && params_.sampling.scheme == Scheme::gauss;
     slab_mm_ = params_.sampling.step * spacing * (pairs ? 2.0 : 1.0);
     if (slab_mm_ < diagonal / slab_limit) {
         prepare.log().fault("volume.step", "the step would take more than " + std::to_string(slab_limit) +
@@ -126,21 +183,20 @@ Work RayCastEffect::prepare(Prepare& prepare) {
     }
     const double slab_voxels = params_.sampling.step * (pairs ? 2.0 : 1.0);
     const int border = static_cast<int>(std::ceil((pairs ? 0.289 * slab_voxels : 0.0) + 0.5));
-    skips_ = params_.sampling.skip && !projects(params_.function);
-    if (skips_) {
+    variant_.skip = params_.sampling.skip && !projects();
+    if (variant_.skip) {
         bricks_ = load_bricks(prepare.assets(), *source_, params_.volume.channel, brick_size, border);
-        std::vector<StoredRange> visible;
-        for (const ValueRange& range : visible_ranges(function_)) {
-            const double a = (range.low - volume.intercept) / volume.slope;
-            const double b = (range.high - volume.intercept) / volume.slope;
-            visible.push_back({static_cast<float>(std::min(a, b)), static_cast<float>(std::max(a, b))});
-        }
+        const TexelMap map{volume.slope, volume.intercept};
+        const double a = map.texel_of(source_->statistics.min);
+        const double b = map.texel_of(source_->statistics.max);
+        const std::vector<StoredRange> visible = stored_ranges(
+            function_, map, {std::min(a, b), std::max(a, b)}, params_.transfer_function.entries);
         skip_map_.update(bricks_->grid, visible, crop_,
                          Hash().add(parameters_key_).add(bricks_.get()).add(bricks_->version).value());
         if (skip_map_.occupancy() == 0.0) {
             return Work::idle("the transfer function shows nothing of the volume");
         }
-        skips_ = skip_map_.occupancy() < 0.98;
+        variant_.skip = skip_map_.occupancy() < 0.98;
     }
     const View& view = prepare.frame().eye();
     const Bounds bounds{glm::vec3(box_min_), glm::vec3(box_max_)};
@@ -168,24 +224,15 @@ void RayCastEffect::draw(const Pass& pass) {
     gpu.update(*source_);
     const Volume& volume = source_->volume();
     const TexelMap& map = gpu.map();
-    const auto texel = [&](double value) { return map.texel((value - volume.intercept) / volume.slope); };
-    const double low = source_->statistics.min;
-    const double high = std::max(source_->statistics.max, low + 1e-6);
-    const int entries = params_.transfer_function.entries;
-    if (table_key_ != parameters_key_) {
-        std::vector<glm::vec4> table;
-        for (int i = 0; i < entries; ++i) {
-            const glm::dvec4 c = evaluate(function_, low + (high - low) * i / (entries - 1));
-            table.emplace_back(glm::vec3(c), projects(params_.function)
-                                                 ? c.a
-                                                 : extinction(c.a, function_.reference_length_mm));
-        }
-        table_.emplace(
-            gl::Texture::make_2d(pass.gl(), entries, 1, PixelFormat::rgba32f, "transfer function"));
-        table_->upload(std::as_bytes(std::span(table)));
-        table_key_ = parameters_key_;
+    const auto texel = [&](double value) { return map.texel_of((value - volume.intercept) / volume.slope); };
+    const std::uint64_t table_key = Hash().add(parameters_key_).add(source_->version()).value();
+    if (table_key_ != table_key) {
+        make_table(pass.gl(), map);
+        table_key_ = table_key;
     }
-    const gl::Program& program = pass.use(skips_ ? 1 : 0);
+    variant_.compute = pass.compute("colour");
+    const auto variant = std::ranges::find(variants_, variant_);
+    const gl::Program& program = pass.use(static_cast<std::size_t>(variant - variants_.begin()));
     const RayFrame frame = make_ray_frame(pass.frame().eye(), texture_to_world_);
     program.set("u_pixel", 2.0F / glm::vec2(pass.size()));
     program.set("u_point", std::span<const glm::vec3>(frame.point));
@@ -196,8 +243,7 @@ void RayCastEffect::draw(const Pass& pass) {
     program.set("u_box_max", glm::vec3(box_max_));
     program.set("u_slab", static_cast<float>(slab_mm_));
     program.set("u_slab_limit", slab_limit);
-    const double per_entry = (entries - 1) / (texel(high) - texel(low));
-    program.set("u_transfer_place", glm::vec2(glm::dvec2(per_entry, -texel(low) * per_entry)));
+    program.set("u_transfer_place", glm::vec2(table_place_));
     program.set("u_depth_limit", params_.sampling.termination > 0.0
                                      ? static_cast<float>(-std::log(params_.sampling.termination))
                                      : 3e38F);
@@ -212,12 +258,16 @@ void RayCastEffect::draw(const Pass& pass) {
     }
     pass.bind(program, "u_volume", gpu.texture());
     pass.bind(program, "u_transfer", *table_, gl::Filter::nearest);
-    if (skips_) {
+    if (variant_.skip) {
         program.set("u_bricks_per_unit",
                     glm::vec3(glm::dvec3(volume.grid.dims) / static_cast<double>(brick_size)));
         pass.bind(program, "u_bricks", skip_map_.texture(pass.gl()), gl::Filter::nearest);
     }
-    pass.draw_fullscreen();
+    if (variant_.compute) {
+        pass.dispatch(program, "colour");
+    } else {
+        pass.draw_fullscreen();
+    }
 }
 
 }  // namespace viscera::volume

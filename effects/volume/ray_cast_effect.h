@@ -22,18 +22,30 @@ class RayCastEffect final : public Effect {
     void draw(const Pass& pass) override;
 
   private:
-    struct Table;
+    /// What the programs differ in besides the parameters.
+    struct Variant {
+        RayFunction function = RayFunction::composite;
+        bool skip = false;
+        bool surface = false;     ///< rays end at opaque surfaces
+        bool background = false;  ///< the picture goes over another
+        bool compute = false;
+        bool operator==(const Variant&) const = default;
+    };
     void find_function(Prepare& prepare);
+    void make_table(const gl::Functions& gl, const TexelMap& stored_of_texel);
+    [[nodiscard]] bool projects() const { return variant_.function != RayFunction::composite; }
+
     void find_crop();
 
     RayCastParams params_;
     mutable std::vector<ProgramDesc> programs_;
+    mutable std::vector<Variant> variants_;      ///< of each program
+    Variant variant_;                            ///< of this frame
     std::uint64_t parameters_key_ = 0;
     std::shared_ptr<const Source> source_;
     TransferFunction function_;
     std::shared_ptr<Bricks> bricks_;
     SkipMap skip_map_;
-    bool skips_ = false;
     glm::dmat4 texture_to_world_{1.0};
     glm::dvec3 box_min_{0.0};
     glm::dvec3 box_max_{1.0};
@@ -41,6 +53,7 @@ class RayCastEffect final : public Effect {
     double slab_mm_ = 1.0;
     std::optional<gl::Texture> table_;
     std::uint64_t table_key_ = 0;
+    glm::dvec2 table_place_{0.0};
 };
 
 }  // namespace viscera::volume

@@ -17,33 +17,6 @@ std::span<const std::string_view> choice_names(Scheme) {
     return scheme_names;
 }
 
-void TransferParams::visit(ParamVisitor& v) {
-    v.field({.name = "points", .doc = "Knots by value; linear between them, constant beyond them."}, points);
-    v.field({.name = "gradient", .doc = "Factor on the opacity by gradient magnitude."}, gradient);
-    v.field({.name = "reference_length_mm",
-             .doc = "Length that the opacities are given for.",
-             .unit = "mm",
-             .min = 0.0,
-             .min_excluded = true},
-            reference_length_mm);
-    v.field({.name = "file",
-             .doc = "Transfer function of 3D Slicer (.vp, .vp.json), ParaView (.json) or viscera (.json), "
-                    "instead of "
-                    "points."},
-            file);
-    v.field(
-        {.name = "preset",
-         .doc = "Name of one preset in the file, or a window for CT (ct-bone, ...) when there is no file."},
-        preset);
-    v.field({.name = "window", .doc = "Grey ramp instead of points."}, window);
-    v.field({.name = "range", .doc = "Stretches a file's knots from their own range to these two values."},
-            range);
-    v.field({.name = "entries", .doc = "Entries of the table on the GPU.", .min = 2, .max = 16384}, entries);
-    v.field({.name = "interpolate",
-             .doc = "Interpolates between the table's entries: exact for steep ramps, at a second fetch."},
-            interpolate);
-}
-
 void SamplingParams::visit(ParamVisitor& v) {
     v.field({.name = "step",
              .doc = "Mean distance of samples in units of the smallest voxel spacing.",
@@ -80,7 +53,10 @@ void XrayParams::visit(ParamVisitor& v) {
 
 void RayCastParams::visit(ParamVisitor& v) {
     v.field({.name = "volume", .doc = "The volume.", .required = true}, volume);
-    v.field({.name = "function", .doc = "What is made of the values along a ray."}, function);
+    v.field({.name = "function",
+             .doc = "What is made of the values along a ray; by default what the transfer function's file "
+                    "asks for, else composite."},
+            function);
     v.field({.name = "transfer_function", .doc = "Colour and opacity over value."}, transfer_function);
     v.field({.name = "sampling", .doc = "Where rays are sampled: time against error."}, sampling);
     v.field({.name = "crop", .doc = "Part of the volume that is shown."}, crop);

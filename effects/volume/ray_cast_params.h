@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "effects/volume/source.h"
-#include "engine/core/transfer_function.h"
+#include "effects/volume/transfer_params.h"
 
 namespace viscera::volume {
 
@@ -15,21 +15,6 @@ enum class RayFunction { composite, mip, minip, average, xray };
 /// How a slab of the ray is integrated.
 enum class Scheme { midpoint, gauss };
 [[nodiscard]] std::span<const std::string_view> choice_names(Scheme scheme);
-
-/// Colour and opacity over value, from knots, a preset file or a window.
-struct TransferParams {
-    std::vector<TransferPoint> points;
-    std::vector<GradientPoint> gradient;
-    double reference_length_mm = 1.0;
-    AssetPath file;
-    std::string preset;
-    std::optional<WindowLevel> window;
-    std::optional<glm::dvec2> range;
-    int entries = 4096;
-    bool interpolate = false;
-
-    void visit(ParamVisitor& v);
-};
 
 struct SamplingParams {
     double step = 0.5;
@@ -58,7 +43,7 @@ struct XrayParams {
 
 struct RayCastParams {
     SourceParams volume;
-    RayFunction function = RayFunction::composite;
+    std::optional<RayFunction> function;
     TransferParams transfer_function;
     SamplingParams sampling;
     CropParams crop;
