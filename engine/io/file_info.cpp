@@ -12,6 +12,7 @@
 #include "engine/io/file_bytes.h"
 #include "engine/io/mesh.h"
 #include "engine/io/png.h"
+#include "engine/io/volume.h"
 #include "engine/io/vtp.h"
 
 namespace viscera::io {
@@ -20,7 +21,8 @@ namespace {
 
 using Json = nlohmann::json;
 
-Json to_json(const glm::vec3& p) {
+template <class Vector>
+Json to_json(const Vector& p) {
     return {p.x, p.y, p.z};
 }
 
@@ -176,9 +178,49 @@ bool has_lines(const std::filesystem::path& file) {
                                [](const VtpPiece& piece) { return !piece.lines.offsets.empty(); });
 }
 
+/// Finite range, mean and histogram of a channel, rescaled.
+Json describe_values(const VolumeStatistics& values) {
+    Json result = {{"non_finite", values.non_finite}};
+    if (std::ranges::any_of(values.histogram, [](std::size_t count) { return count > 0; })) {
+        result["min"] = values.min;
+        result["max"] = values.max;
+        result["mean"] = values.mean;
+        result["histogram"] = values.histogram;
+    }
+    return result;
+}
+
+Json describe_volume(const std::filesystem::path& file, Log& log) {
+    constexpr int bins = 32;
+    const Volume volume = load_volume(file, {}, log);
+    const VolumeGrid& grid = volume.grid;
+    Json direction = Json::array();
+    for (int row = 0; row < 3; ++row) {
+        direction.push_back({grid.direction[0][row], grid.direction[1][row], grid.direction[2][row]});
+    }
+    Json channels = Json::array();
+    for (int channel = 0; channel < volume.channels; ++channel) {
+        channels.push_back(describe_values(statistics(volume, channel, bins)));
+    }
+    Json result = {{"dims", {grid.dims.x, grid.dims.y, grid.dims.z}},
+                   {"spacing_mm", to_json(grid.spacing_mm)},
+                   {"origin_mm", to_json(grid.origin_mm)},
+                   {"direction", std::move(direction)},
+                   {"type", to_string(volume.type)},
+                   {"slope", volume.slope},
+                   {"intercept", volume.intercept},
+                   {"unit", volume.unit},
+                   {"channels", std::move(channels)}};
+    if (volume.narrowing_error > 0.0) {
+        result["narrowing_error"] = volume.narrowing_error;
+    }
+    return result;
+}
+
 [[noreturn]] void fail_unknown(const std::filesystem::path& file) {
     static const std::map<std::string_view, std::string_view> advice{
-        {".vtk", "save surfaces as .vtp or .ply, for example with ParaView or pyvista"},
+        {".vtk",
+         "of .vtk only structured points are read; save surfaces as .vtp or .ply, for example with ParaView"},
         {".vtu", "extract the surface and save it as .vtp, for example with ParaView"},
         {".fbx", "export it as .glb, for example with Blender"},
         {".dae", "export it as .glb, for example with Blender"},
@@ -188,15 +230,16 @@ bool has_lines(const std::filesystem::path& file) {
         {".step", "mesh it and save it as .stl, for example with FreeCAD"},
         {".stp", "mesh it and save it as .stl, for example with FreeCAD"},
         {".off", "save it as .ply, for example with MeshLab"},
-        {".tif", "convert it with ImageMagick to .png or with oiiotool to .exr"},
+        {".tif",
+         "convert it with ImageMagick to .png or with oiiotool to .exr; a folder of slices is a volume"},
         {".tiff", "convert it with ImageMagick to .png or with oiiotool to .exr"},
         {".bmp", "convert it with ImageMagick to .png"},
-        {".hdr", "convert it with oiiotool to .exr"},
-        {".dcm", "it is a volume or a slice; 3D Slicer segments it and saves the surface as .stl or .ply"}};
+        {".hdr", "convert it with oiiotool to .exr"}};
     std::string message =
         "cannot be described: meshes are read from .gltf, .glb, .stl, .obj, .ply and .vtp, centrelines from "
         ".vtp "
-        "and .json, pictures from .exr, .png, .jpg";
+        "and .json, pictures from .exr, .png, .jpg, volumes from DICOM, .nii, .nrrd, .mha, .mhd, .vtk, .vti, "
+        ".csv, folders of slices, and .json beside a raw file";
     if (const auto found = advice.find(lower_extension(file)); found != advice.end()) {
         message += "; " + std::string(found->second);
     } else {
@@ -228,15 +271,22 @@ Json describe(const std::filesystem::path& file) {
     constexpr std::array geometry{".gltf", ".glb", ".stl", ".obj", ".ply", ".vtp", ".json"};
     const std::string extension = lower_extension(file);
     Json result;
-    if (std::ranges::find(images, extension) != images.end()) {
-        result = {{"kind", "image"}, {"images", describe_images(file)}};
-    } else if (std::ranges::find(geometry, extension) != geometry.end()) {
-        Log log;
-        result = describe_geometry(file, log);
+    const auto add_faults = [&result](const Log& log) {
         result["faults"] = Json::object();
         for (const auto& [key, count] : log.faults()) {
             result["faults"][key] = count;
         }
+    };
+    if (is_volume(file)) {
+        Log log;
+        result = {{"kind", "volume"}, {"volume", describe_volume(file, log)}};
+        add_faults(log);
+    } else if (std::ranges::find(images, extension) != images.end()) {
+        result = {{"kind", "image"}, {"images", describe_images(file)}};
+    } else if (std::ranges::find(geometry, extension) != geometry.end()) {
+        Log log;
+        result = describe_geometry(file, log);
+        add_faults(log);
     } else {
         fail_unknown(file);
     }

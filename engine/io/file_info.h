@@ -6,11 +6,13 @@
 
 namespace viscera::io {
 
-/// What a file holds, as a JSON object with "file", "kind" ("meshes", "centreline", "image") and one list per
-/// kind: meshes with vertices, triangles, bounds in mm, attributes, whether closed and which way round;
-/// centrelines with nodes, edges, ends and radii; images with size, format, attributes and the finite range,
-/// NaN and Inf of each channel. "faults" counts what was dropped on reading. Throws Error(file), for an
-/// unknown extension with what can be read and what to convert with.
+/// What a file holds, as a JSON object with "file", "kind" ("meshes", "centreline", "image", "volume") and
+/// one list or object per kind: meshes with vertices, triangles, bounds in mm, attributes, whether closed and
+/// which way round; centrelines with nodes, edges, ends and radii; images with size, format, attributes and
+/// the finite range, NaN and Inf of each channel; volumes with dims, spacing, origin, direction (rows),
+/// stored type, rescale, unit, and of each channel the rescaled finite range, mean, NaN and Inf, and a
+/// histogram of 32 equal bins over that range. "faults" counts what was dropped on reading. Throws
+/// Error(file), for an unknown extension with what can be read and what to convert with.
 [[nodiscard]] nlohmann::json describe(const std::filesystem::path& file);
 
 }  // namespace viscera::io

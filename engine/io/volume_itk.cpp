@@ -1,5 +1,6 @@
 #include "engine/io/volume_itk.h"
 
+#include <gdcmTrace.h>
 #include <itkMetaImageIO.h>
 #include <itkNiftiImageIO.h>
 #include <itkNrrdImageIO.h>
@@ -66,12 +67,19 @@ ItkHeader header_of(const itk::ImageIOBase& io) {
 
 }  // namespace
 
-QuietItk::QuietItk() : before_(itk::Object::GetGlobalWarningDisplay()) {
+QuietItk::QuietItk()
+    : itk_warns_(itk::Object::GetGlobalWarningDisplay()),
+      gdcm_warns_(gdcm::Trace::GetWarningFlag()),
+      gdcm_tells_errors_(gdcm::Trace::GetErrorFlag()) {
     itk::Object::GlobalWarningDisplayOff();
+    gdcm::Trace::WarningOff();
+    gdcm::Trace::ErrorOff();
 }
 
 QuietItk::~QuietItk() {
-    itk::Object::SetGlobalWarningDisplay(before_);
+    itk::Object::SetGlobalWarningDisplay(itk_warns_);
+    gdcm::Trace::SetWarning(gdcm_warns_);
+    gdcm::Trace::SetError(gdcm_tells_errors_);
 }
 
 std::string words_of(const std::exception& error) {

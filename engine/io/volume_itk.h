@@ -9,7 +9,7 @@
 
 namespace viscera::io {
 
-/// Keeps ITK's warnings off the host's standard error stream while it lives.
+/// Keeps the warnings of ITK and GDCM off the host's standard error stream while it lives.
 class QuietItk {
   public:
     QuietItk();
@@ -18,7 +18,9 @@ class QuietItk {
     ~QuietItk();
 
   private:
-    bool before_;
+    bool itk_warns_;
+    bool gdcm_warns_;
+    bool gdcm_tells_errors_;
 };
 
 /// What an exception says of the file; ITK's also name places in ITK's source, which are left out.
