@@ -30,6 +30,9 @@ struct Gauss {
     std::array<double, points> weight{};
     std::array<std::array<double, points>, points> partial{};  ///< [i][j]: int_-1^x_i of cardinal j
     std::array<double, points> highest{};  ///< gives the interpolant's Legendre coefficient of degree 4
+    /// Gives the interpolant at places where it is checked, which are no nodes.
+    static constexpr std::array<double, 2> check_x{-0.98, 0.98};
+    std::array<std::array<double, points>, check_x.size()> check{};
 
     Gauss() {
         const double a = 2.0 * std::sqrt(10.0 / 7.0);
@@ -49,6 +52,12 @@ struct Gauss {
                         0.5 * weight[j] * legendre(n, x[j]) * (legendre(n + 1, x[i]) - legendre(n - 1, x[i]));
                 }
                 partial[i][j] = sum;
+            }
+            for (std::size_t i = 0; i < check_x.size(); ++i) {
+                for (std::size_t n = 0; n < points; ++n) {
+                    check[i][j] += (static_cast<double>(n) + 0.5) * weight[j] * legendre(n, x[j]) *
+                                   legendre(n, check_x[i]);
+                }
             }
         }
     }
@@ -98,64 +107,84 @@ void split_at_knots(const Polynomial& value, const Medium& medium, Use&& use) {
     }
 }
 
-/// How large the last Legendre coefficient may be: the rule is of order ten where the interpolant is of order
-/// five, so its error is about the square of what this shows.
-double highest_allowed(const Quality& quality) {
-    return 0.1 * std::sqrt(quality.tolerance);
+/// How large what the rule leaves unsure may be: it is of order ten where its interpolant is of order five,
+/// so its error is about the square.
+double unsure_allowed(const Quality& quality) {
+    return 0.03 * std::sqrt(quality.tolerance);
 }
 
-void advance_stretch(Light& light, const Stretch& stretch, double u0, double u1, double allowed, int depth) {
+/// The rule's emissions over part of a stretch.
+struct Sampled {
+    std::array<Emission, points> e;
+    double mm = 0.0;      ///< ds per unit of the rule
+    double depth = 0.0;   ///< int kappa ds
+    double unsure = 0.0;  ///< how far the interpolant through the nodes may be off, times mm
+};
+
+/// One number that follows extinction and colour.
+double mixed(const Emission& e) {
+    return e.extinction * (1.0 + 0.3 * e.colour.x + 0.37 * e.colour.y + 0.33 * e.colour.z);
+}
+
+Sampled sampled(const Stretch& stretch, double u0, double u1) {
     const Gauss& rule = gauss();
     const double middle = 0.5 * (u0 + u1);
     const double half = 0.5 * (u1 - u0);
-    const double mm = half * stretch.half_mm;
-    std::array<Emission, points> e;
-    double depth_added = 0.0;
+    const auto at = [&](double x) {
+        return stretch.medium.at(stretch.value(middle + half * x), stretch.segment);
+    };
+    Sampled result;
+    result.mm = half * stretch.half_mm;
     double highest = 0.0;
-    double highest_colour = 0.0;
+    std::array<double, Gauss::check_x.size()> expected{};
     for (std::size_t i = 0; i < points; ++i) {
-        e[i] = stretch.medium.at(stretch.value(middle + half * rule.x[i]), stretch.segment);
-        depth_added += rule.weight[i] * e[i].extinction;
-        highest += rule.highest[i] * e[i].extinction;
-        highest_colour +=
-            rule.highest[i] * e[i].extinction * (e[i].colour.x + 1.1 * e[i].colour.y + 0.9 * e[i].colour.z);
+        result.e[i] = at(rule.x[i]);
+        result.depth += rule.weight[i] * result.e[i].extinction;
+        const double seen = mixed(result.e[i]);
+        highest += rule.highest[i] * seen;
+        for (std::size_t k = 0; k < expected.size(); ++k) {
+            expected[k] += rule.check[k][i] * seen;
+        }
     }
-    depth_added *= mm;
-    const double unsure = light.transmittance * mm * std::max(std::abs(highest), std::abs(highest_colour));
-    if (depth > 0 && (unsure > allowed || (depth_added > 1.0 && light.transmittance > 0.0))) {
-        advance_stretch(light, stretch, u0, middle, allowed, depth - 1);
-        advance_stretch(light, stretch, middle, u1, allowed, depth - 1);
+    double worst = std::abs(highest);
+    for (std::size_t k = 0; k < expected.size(); ++k) {
+        worst = std::max(worst, std::abs(expected[k] - mixed(at(Gauss::check_x[k]))));
+    }
+    result.depth *= result.mm;
+    result.unsure = worst * result.mm;
+    return result;
+}
+
+void advance_stretch(Light& light, const Stretch& stretch, double u0, double u1, double allowed,
+                     int halvings) {
+    const Sampled now = sampled(stretch, u0, u1);
+    if (halvings > 0 && light.transmittance > 0.0 &&
+        (light.transmittance * now.unsure > allowed || now.depth > 1.0)) {
+        const double middle = 0.5 * (u0 + u1);
+        advance_stretch(light, stretch, u0, middle, allowed, halvings - 1);
+        advance_stretch(light, stretch, middle, u1, allowed, halvings - 1);
         return;
     }
+    const Gauss& rule = gauss();
     for (std::size_t i = 0; i < points; ++i) {
         double before = 0.0;
         for (std::size_t j = 0; j < points; ++j) {
-            before += rule.partial[i][j] * e[j].extinction;
+            before += rule.partial[i][j] * now.e[j].extinction;
         }
-        light.colour += light.transmittance * mm * rule.weight[i] * e[i].extinction * std::exp(-mm * before) *
-                        e[i].colour;
+        light.colour += light.transmittance * now.mm * rule.weight[i] * now.e[i].extinction *
+                        std::exp(-now.mm * before) * now.e[i].colour;
     }
-    light.transmittance *= std::exp(-depth_added);
+    light.transmittance *= std::exp(-now.depth);
 }
 
-double depth_of_stretch(const Stretch& stretch, double u0, double u1, double allowed, int depth) {
-    const Gauss& rule = gauss();
-    const double middle = 0.5 * (u0 + u1);
-    const double half = 0.5 * (u1 - u0);
-    double sum = 0.0;
-    double highest = 0.0;
-    for (std::size_t i = 0; i < points; ++i) {
-        const double extinction =
-            stretch.medium.at(stretch.value(middle + half * rule.x[i]), stretch.segment).extinction;
-        sum += rule.weight[i] * extinction;
-        highest += rule.highest[i] * extinction;
+double depth_of_stretch(const Stretch& stretch, double u0, double u1, double allowed, int halvings) {
+    const Sampled now = sampled(stretch, u0, u1);
+    if (halvings > 0 && now.unsure > allowed) {
+        const double middle = 0.5 * (u0 + u1);
+        return depth_of_stretch(stretch, u0, middle, allowed, halvings - 1) +
+               depth_of_stretch(stretch, middle, u1, allowed, halvings - 1);
     }
-    const double mm = half * stretch.half_mm;
-    if (depth > 0 && mm * std::abs(highest) > allowed) {
-        return depth_of_stretch(stretch, u0, middle, allowed, depth - 1) +
-               depth_of_stretch(stretch, middle, u1, allowed, depth - 1);
-    }
-    return mm * sum;
+    return now.depth;
 }
 
 constexpr int most_halvings = 40;
@@ -233,7 +262,7 @@ class CrossingFinder {
 }  // namespace
 
 void advance(Light& light, const Piece& piece, const Medium& medium, const Quality& quality) {
-    const double allowed = highest_allowed(quality);
+    const double allowed = unsure_allowed(quality);
     split_at_knots(piece.value, medium, [&](double u0, double u1, std::size_t segment) {
         advance_stretch(light, {piece.value, medium, segment, piece.half_mm()}, u0, u1, allowed,
                         most_halvings);
@@ -253,7 +282,7 @@ Light composite(const Field& field, const Ray& ray, const Interval& interval, co
 double optical_depth(const Field& field, const Ray& ray, const Interval& interval, const Medium& medium,
                      const Quality& quality) {
     double sum = 0.0;
-    const double allowed = highest_allowed(quality);
+    const double allowed = unsure_allowed(quality);
     visit_pieces(field, ray, interval, [&](const Piece& piece) {
         split_at_knots(piece.value, medium, [&](double u0, double u1, std::size_t segment) {
             sum += depth_of_stretch({piece.value, medium, segment, piece.half_mm()}, u0, u1, allowed,

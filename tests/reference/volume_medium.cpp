@@ -37,11 +37,19 @@ Medium::Medium(const TransferFunction& function) : reference_length_mm_(function
                               !(a.opacity > 0.0) && !(b.opacity > 0.0)};
         knots_.push_back(a.value);
         segments_.push_back(segment);
-        // Full opacity is cut just below 1, which makes a kink of its own.
-        if ((a.opacity > full_opacity) != (b.opacity > full_opacity)) {
-            const double kink = a.value + (full_opacity - a.opacity) / segment.opacity_slope;
-            if (kink > a.value && kink < b.value) {
-                knots_.push_back(kink);
+        // Full opacity is cut just below 1, which makes a kink of its own, and before that the logarithm
+        // grows steep. Knots at opacities 1/2, 3/4, 7/8... keep it tame between each two of them.
+        std::vector<double> grades;
+        for (int k = 1; k <= 24; ++k) {
+            const double share = (1.0 - std::ldexp(1.0, -k) - a.opacity) / (b.opacity - a.opacity);
+            if (share > 0.0 && share < 1.0) {
+                grades.push_back(a.value + share * width);
+            }
+        }
+        std::ranges::sort(grades);
+        for (const double grade : grades) {
+            if (grade > knots_.back() && grade < b.value) {
+                knots_.push_back(grade);
                 segments_.push_back(segment);
             }
         }

@@ -26,7 +26,8 @@ class Medium {
     /// Colour and opacity A0 linear between points, constant beyond the ends; extinction
     /// -log1p(-min(A0, 1 - 2^-24)) / reference_length_mm. Points ascending, values finite; of several points
     /// at one value the first holds on its left and the last on its right. No points: transparent. The
-    /// gradient axis is left out (LatticeOptions::shade can apply it).
+    /// gradient axis is left out (LatticeOptions::shade can apply it). Besides the points' values, knots lie
+    /// at opacities 1 - 2^-k, k = 1..24, where the logarithm would be too steep for one smooth stretch.
     explicit Medium(const TransferFunction& function);
     /// Any law, smooth between `knots` (ascending).
     Medium(std::vector<double> knots, Law law);
