@@ -297,7 +297,9 @@ std::string map_shader_log(std::string_view log, const ShaderSource& source) {
 }
 
 std::string to_string(const ProgramDesc& program) {
-    std::string text = program.fragment.empty() ? program.vertex : program.fragment;
+    std::string text = !program.compute.empty()   ? program.compute
+                       : program.fragment.empty() ? program.vertex
+                                                  : program.fragment;
     std::string_view separator = "[";
     for (std::string define : program.defines) {
         std::ranges::replace(define, ' ', '=');

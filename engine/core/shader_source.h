@@ -50,6 +50,7 @@ struct ProgramDesc {
     std::string vertex;                ///< file relative to glsl/
     std::string fragment;              ///< file relative to glsl/; empty for transform feedback only
     std::vector<std::string> defines;  ///< "NAME" or "NAME value"
+    std::string compute;  ///< file relative to glsl/, for OpenGL 4.3; then the other two are empty
 
     bool operator==(const ProgramDesc&) const = default;
 };

@@ -88,6 +88,8 @@ using ProgramHandle = Handle<delete_program>;
 /// filling a texture never disturbs one that is bound for sampling.
 inline constexpr GLuint texture_units = 16;
 inline constexpr GLuint editing_unit = texture_units - 1;
+/// The image unit that compute shaders write their target through.
+inline constexpr GLuint image_unit = 0;
 /// Draw buffers whose indexed state (colour mask, blending) the engine may touch.
 inline constexpr GLuint draw_buffers = 8;
 /// Indexed uniform buffer bindings that the engine uses.

@@ -156,6 +156,30 @@ void poison_units(const Functions& gl, const Objects& objects) {
     gl.ActiveTexture(static_cast<GLenum>(active));
 }
 
+// ---- images
+
+bool has_images(const Functions& gl) {
+    return gl.VERSION_4_3 != 0;
+}
+
+constexpr std::array<GLenum, 6> image_fields{GL_IMAGE_BINDING_NAME,    GL_IMAGE_BINDING_LEVEL,
+                                             GL_IMAGE_BINDING_LAYERED, GL_IMAGE_BINDING_LAYER,
+                                             GL_IMAGE_BINDING_ACCESS,  GL_IMAGE_BINDING_FORMAT};
+
+void save_image(const Functions& gl, Values out) {
+    for (std::size_t i = 0; i < image_fields.size(); ++i) {
+        GLint value = 0;
+        gl.GetIntegeri_v(image_fields[i], image_unit, &value);
+        out[i] = value;
+    }
+}
+
+void restore_image(const Functions& gl, Saved in) {
+    gl.BindImageTexture(image_unit, as_name(in[0]), static_cast<GLint>(in[1]),
+                        in[2] != 0 ? GL_TRUE : GL_FALSE, static_cast<GLint>(in[3]), as_enum(in[4]),
+                        as_enum(in[5]));
+}
+
 // ---- pixel store
 
 constexpr std::array<GLenum, 16> pixel_store{
@@ -295,6 +319,11 @@ constexpr std::array rows{
     buffer_row<GL_UNIFORM_BUFFER, GL_UNIFORM_BUFFER_BINDING>("uniform buffer"),
     HostStateRow{"texture units", slots_per_unit* texture_units, false, always, save_units, restore_units,
                  poison_units},
+    HostStateRow{"image unit", image_fields.size(), false, has_images, save_image, restore_image,
+                 [](const Functions& gl, const Objects& objects) {
+                     gl.BindImageTexture(image_unit, objects.textures[2], 0, GL_TRUE, 0, GL_READ_WRITE,
+                                         GL_R32F);
+                 }},
     HostStateRow{"active texture", 1, false, always,
                  [](const Functions& gl, Values out) { out[0] = read_int(gl, GL_ACTIVE_TEXTURE); },
                  [](const Functions& gl, Saved in) { gl.ActiveTexture(as_enum(in[0])); },

@@ -5,6 +5,8 @@
 #include <initializer_list>
 #include <optional>
 
+#include <glm/gtc/type_ptr.hpp>
+
 #include "engine/core/error.h"
 #include "engine/gl/debug.h"
 #include "engine/gl/mesh.h"
@@ -23,13 +25,9 @@ constexpr std::array<AttributeName, 5> attribute_names{{{Attribute::position, "a
                                                         {Attribute::colour, "a_color"}}};
 
 // Of the textures that a Texture can be; any other sampler could never be bound.
-constexpr std::array<GLenum, 7> sampler_types{GL_SAMPLER_2D,
-                                              GL_SAMPLER_3D,
-                                              GL_SAMPLER_2D_SHADOW,
-                                              GL_INT_SAMPLER_2D,
-                                              GL_INT_SAMPLER_3D,
-                                              GL_UNSIGNED_INT_SAMPLER_2D,
-                                              GL_UNSIGNED_INT_SAMPLER_3D};
+constexpr std::array<GLenum, 8> sampler_types{
+    GL_SAMPLER_2D,     GL_SAMPLER_3D,     GL_SAMPLER_2D_ARRAY,        GL_SAMPLER_2D_SHADOW,
+    GL_INT_SAMPLER_2D, GL_INT_SAMPLER_3D, GL_UNSIGNED_INT_SAMPLER_2D, GL_UNSIGNED_INT_SAMPLER_3D};
 
 bool is_sampler(GLenum type) {
     return std::ranges::find(sampler_types, type) != sampler_types.end();
@@ -141,9 +139,12 @@ ShaderHandle compile(const Functions& gl, GLenum stage, const ShaderSource& sour
 
 }  // namespace
 
+Program::Program(const Functions& gl, std::string_view label)
+    : handle_(ProgramHandle::own(gl, gl.CreateProgram())), label_(label) {}
+
 Program::Program(const Functions& gl, const ShaderSource& vertex, const ShaderSource& fragment,
                  std::string_view label, std::span<const std::string> feedback)
-    : handle_(ProgramHandle::own(gl, gl.CreateProgram())), label_(label) {
+    : Program(gl, label) {
     const ShaderHandle vertex_shader = compile(gl, GL_VERTEX_SHADER, vertex, label, warnings_);
     std::optional<ShaderHandle> fragment_shader;
     gl.AttachShader(id(), vertex_shader.id());
@@ -162,6 +163,26 @@ Program::Program(const Functions& gl, const ShaderSource& vertex, const ShaderSo
         gl.TransformFeedbackVaryings(id(), static_cast<GLsizei>(names.size()), names.data(),
                                      GL_INTERLEAVED_ATTRIBS);
     }
+    link();
+    // The program keeps its code; the shaders need not stay.
+    gl.DetachShader(id(), vertex_shader.id());
+    if (fragment_shader) {
+        gl.DetachShader(id(), fragment_shader->id());
+    }
+}
+
+Program Program::make_compute(const Functions& gl, const ShaderSource& compute, std::string_view label) {
+    Program program(gl, label);
+    const ShaderHandle shader = compile(gl, GL_COMPUTE_SHADER, compute, label, program.warnings_);
+    gl.AttachShader(program.id(), shader.id());
+    program.link();
+    gl.DetachShader(program.id(), shader.id());
+    gl.GetProgramiv(program.id(), GL_COMPUTE_WORK_GROUP_SIZE, glm::value_ptr(program.group_size_));
+    return program;
+}
+
+void Program::link() {
+    const Functions& gl = handle_.gl();
     gl.LinkProgram(id());
     GLint linked = GL_FALSE;
     gl.GetProgramiv(id(), GL_LINK_STATUS, &linked);
@@ -170,11 +191,6 @@ Program::Program(const Functions& gl, const ShaderSource& vertex, const ShaderSo
         throw Error(ErrorCode::gl, label_, "does not link:\n" + log);
     }
     warnings_ += log;
-    // The program keeps its code; the shaders need not stay.
-    gl.DetachShader(id(), vertex_shader.id());
-    if (fragment_shader) {
-        gl.DetachShader(id(), fragment_shader->id());
-    }
     label_object(gl, GL_PROGRAM, id(), label_);
     reflect();
     assign_units();
@@ -303,6 +319,7 @@ void Program::unbind_textures() const {
             gl.ActiveTexture(GL_TEXTURE0 + unit);
             gl.BindTexture(GL_TEXTURE_2D, 0);
             gl.BindTexture(GL_TEXTURE_3D, 0);
+            gl.BindTexture(GL_TEXTURE_2D_ARRAY, 0);
             gl.BindSampler(unit, 0);
         }
     }

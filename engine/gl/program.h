@@ -26,9 +26,14 @@ class Program {
     /// program for transform feedback, which writes `feedback` interleaved.
     Program(const Functions& gl, const ShaderSource& vertex, const ShaderSource& fragment,
             std::string_view label, std::span<const std::string> feedback = {});
+    /// A compute program; throws as the constructor does. Only where Capabilities::compute says so.
+    [[nodiscard]] static Program make_compute(const Functions& gl, const ShaderSource& compute,
+                                              std::string_view label);
 
     [[nodiscard]] GLuint id() const { return handle_.id(); }
     [[nodiscard]] const std::string& label() const { return label_; }
+    /// Invocations of a group of a compute program; 0 for others.
+    [[nodiscard]] glm::ivec3 group_size() const { return group_size_; }
     /// What the driver remarked although it compiled; often empty.
     [[nodiscard]] const std::string& warnings() const { return warnings_; }
 
@@ -81,6 +86,8 @@ class Program {
     void connect_block(std::string_view name, GLuint binding) const;
 
   private:
+    Program(const Functions& gl, std::string_view label);
+    void link();
     void reflect();
     void assign_units();
     [[nodiscard]] const Uniform* find(std::string_view name) const;
@@ -90,6 +97,7 @@ class Program {
     ProgramHandle handle_;
     std::string label_;
     std::string warnings_;
+    glm::ivec3 group_size_{0};
     std::vector<Uniform> uniforms_;
 };
 

@@ -132,7 +132,7 @@ void Executor::run(const Frame& frame, FrameReport& report) {
             pass.reason = decision.reason;
             if (decision.draws()) {
                 const Clock::time_point start = Clock::now();
-                draw(frame, p);
+                pass.path = draw(frame, p) ? DrawPath::compute : DrawPath::fragment;
                 pass.cpu_ms += milliseconds_since(start);
             }
             if (passes_[p].timer) {
@@ -181,6 +181,7 @@ void Executor::prepare(const Frame& frame, FrameReport& report) {
         report.passes[p].name = pass.name;
         report.passes[p].effect = pass.effect;
         report.passes[p].cpu_ms = 0.0;
+        report.passes[p].path.reset();
         if (!pass.live) {
             continue;
         }
@@ -205,11 +206,12 @@ const gl::Texture& Executor::texture_of(std::size_t content) const {
     return planned.imported ? imported_textures_[*planned.imported] : pool_.texture(*planned.texture);
 }
 
-void Executor::draw(const Frame& frame, std::size_t p) {
+bool Executor::draw(const Frame& frame, std::size_t p) {
     PassState& state = passes_[p];
     const PlanPass& pass = plan_.passes[p];
     const gl::DebugGroup group(shared_.gl, pass.name);
     state.inputs.clear();
+    state.outputs.clear();
     state.colours.clear();
     const gl::Texture* depth = nullptr;
     glm::ivec2 size(0);
@@ -224,6 +226,7 @@ void Executor::draw(const Frame& frame, std::size_t p) {
             state.inputs.push_back({binding.port, texture});
             continue;
         }
+        state.outputs.push_back({binding.port, texture});
         const bool is_depth = binding.content && info(plan_.contents[*binding.content].format).is_depth;
         if (is_depth) {
             depth = texture;
@@ -245,7 +248,7 @@ void Executor::draw(const Frame& frame, std::size_t p) {
     }
     target.bind();
     clear(state, pass, target, region);
-    const Pass view(shared_, frame, state.programs, state.inputs, size, region);
+    const Pass view(shared_, frame, state.programs, state.inputs, state.outputs, size, region);
     view.raster(gl::overwrite_state);
     state.effect->draw(view);
     if (state.timer) {
@@ -253,6 +256,7 @@ void Executor::draw(const Frame& frame, std::size_t p) {
     }
     observe(pass.name, false);
     check(pass.name);
+    return view.dispatched();
 }
 
 void Executor::observe(std::string_view pass, bool begins) const {

@@ -57,6 +57,7 @@ class Executor {
         std::vector<std::size_t> port_of_binding;
         std::vector<ShaderLibrary::Entry*> programs;
         std::vector<Pass::Input> inputs;
+        std::vector<Pass::Output> outputs;
         std::vector<const gl::Texture*> colours;
         std::unique_ptr<gl::GpuTimer> timer;
         Work work;
@@ -64,7 +65,8 @@ class Executor {
 
     void find_programs(PassState& state) const;
     void prepare(const Frame& frame, FrameReport& report);
-    void draw(const Frame& frame, std::size_t pass);
+    /// True when it was done by a compute shader.
+    bool draw(const Frame& frame, std::size_t pass);
     void settle(const Settlement& settlement);
     void turn_over();
     void import(const Frame& frame);

@@ -55,4 +55,28 @@ void Pass::draw_generated(GLenum mode, int vertices, int instances) const {
     gl().DrawArraysInstanced(mode, 0, vertices, instances);
 }
 
+bool Pass::compute(std::string_view port) const {
+    if (!shared_.compute) {
+        return false;
+    }
+    const auto found = std::ranges::find(outputs_, port, &Output::port);
+    return found != outputs_.end() && found->texture != nullptr && found->texture->owned() &&
+           found->texture->format().external != GL_DEPTH_COMPONENT;
+}
+
+void Pass::dispatch(const gl::Program& program, std::string_view port) const {
+    const gl::Texture& target = *std::ranges::find(outputs_, port, &Output::port)->texture;
+    const gl::Functions& gl = shared_.gl;
+    program.set("u_region", glm::ivec4(region_.x, region_.y, region_.width, region_.height));
+    const auto groups = [](int pixels, int size) { return static_cast<GLuint>((pixels + size - 1) / size); };
+    const glm::ivec3 size = program.group_size();
+    gl.BindImageTexture(gl::image_unit, target.id(), 0, GL_FALSE, 0, GL_WRITE_ONLY, target.format().internal);
+    gl.DispatchCompute(groups(region_.width, size.x), groups(region_.height, size.y), 1);
+    // Whatever may be done with a target next: read in a shader, drawn into, read back, copied, filled again.
+    gl.MemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT | GL_PIXEL_BUFFER_BARRIER_BIT |
+                     GL_TEXTURE_UPDATE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+    gl.BindImageTexture(gl::image_unit, 0, 0, GL_FALSE, 0, GL_READ_ONLY, GL_R8);
+    dispatched_ = true;
+}
+
 }  // namespace viscera

@@ -43,14 +43,22 @@ class Pass {
         const gl::VertexArray& no_vertices;
         Assets& assets;
         Log& log;
+        bool compute = false;  ///< passes that can may use compute shaders
+    };
+    /// A port that this pass writes; texture: null when nobody needs it.
+    struct Output {
+        std::string_view port;
+        const gl::Texture* texture = nullptr;
     };
 
     Pass(const Shared& shared, const Frame& frame, std::span<ShaderLibrary::Entry* const> programs,
-         std::span<const Input> inputs, glm::ivec2 size, const PixelRect& region)
+         std::span<const Input> inputs, std::span<const Output> outputs, glm::ivec2 size,
+         const PixelRect& region)
         : shared_(shared),
           frame_(frame),
           programs_(programs),
           inputs_(inputs),
+          outputs_(outputs),
           size_(size),
           region_(region) {}
 
@@ -81,13 +89,26 @@ class Pass {
     /// Draws vertices that the vertex shader makes from gl_VertexID and gl_InstanceID.
     void draw_generated(GLenum mode, int vertices, int instances) const;
 
+    /// Whether a write port can and should be filled by dispatch() instead of a draw: the context has compute
+    /// shaders, the renderer's option allows them, and the target is a colour of viscera's own (what a host
+    /// lends is only known to be drawable).
+    [[nodiscard]] bool compute(std::string_view port) const;
+    /// Runs the compute program in use once for each pixel of region(), in groups of its local size. The
+    /// shader gets the target as image unit 0 and the region as `uniform ivec4 u_region` (x, y, width,
+    /// height): glsl/common/compute.glsl. Only after compute(port) said yes.
+    void dispatch(const gl::Program& program, std::string_view port) const;
+    /// Whether dispatch() has been called.
+    [[nodiscard]] bool dispatched() const { return dispatched_; }
+
   private:
     const Shared& shared_;
     const Frame& frame_;
     std::span<ShaderLibrary::Entry* const> programs_;
     std::span<const Input> inputs_;
+    std::span<const Output> outputs_;
     glm::ivec2 size_;
     PixelRect region_;
+    mutable bool dispatched_ = false;
 };
 
 }  // namespace viscera

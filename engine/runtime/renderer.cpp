@@ -51,6 +51,15 @@ ContextInfo describe(const gl::Capabilities& capabilities) {
     return info;
 }
 
+bool uses_compute(ComputeUse wanted, const gl::Capabilities& capabilities, Log& log) {
+    if (wanted == ComputeUse::on && !capabilities.compute) {
+        log.info("compute shaders are wanted but need OpenGL 4.3, the context is " + capabilities.version +
+                 "; fragment shaders are used");
+    }
+    return capabilities.compute &&
+           (wanted == ComputeUse::on || (wanted == ComputeUse::automatic && !capabilities.software));
+}
+
 }  // namespace
 
 /// Members are destroyed in reverse order: all that holds OpenGL objects before the functions that delete
@@ -70,7 +79,8 @@ class Renderer::Impl {
           samplers_(*gl_),
           black_(make_black(*gl_)),
           no_vertices_(*gl_),
-          shared_{*gl_, shaders_, samplers_, black_, no_vertices_, assets_, log_},
+          shared_{*gl_,         shaders_, samplers_, black_,
+                  no_vertices_, assets_,  log_,      uses_compute(options.compute, capabilities_, log_)},
           executor_(shared_, capabilities_,
                     {.timers = options.timers,
                      .check_errors = options.check_errors,

@@ -20,6 +20,14 @@
 
 namespace viscera {
 
+/// Whether passes that have a compute shader use it. Contexts below OpenGL 4.3 never do and draw the same
+/// picture.
+enum class ComputeUse {
+    automatic,  ///< on hardware; software renderers gain nothing from it
+    on,
+    off,
+};
+
 struct RendererOptions {
     LogCallback log;
     /// Where shaders come from; empty: those embedded in the binary.
@@ -31,6 +39,7 @@ struct RendererOptions {
     bool check_errors = true;
     /// Called around each pass that draws, its clears included: for measuring.
     PassObserver observer;
+    ComputeUse compute = ComputeUse::automatic;
 };
 
 /// One target of a frame, read back.

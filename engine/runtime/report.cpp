@@ -4,6 +4,10 @@
 
 namespace viscera {
 
+std::string_view to_string(DrawPath path) {
+    return path == DrawPath::compute ? "compute" : "fragment";
+}
+
 nlohmann::json to_json(const FrameReport& report) {
     nlohmann::json passes = nlohmann::json::array();
     for (const PassReport& pass : report.passes) {
@@ -11,6 +15,7 @@ nlohmann::json to_json(const FrameReport& report) {
                           {"effect", pass.effect},
                           {"status", to_string(pass.status)},
                           {"reason", pass.reason},
+                          {"path", pass.path ? nlohmann::json(to_string(*pass.path)) : nlohmann::json()},
                           {"cpu_ms", pass.cpu_ms},
                           {"gpu_ms", pass.gpu_ms ? nlohmann::json(*pass.gpu_ms) : nlohmann::json()}});
     }

@@ -14,13 +14,18 @@
 
 namespace viscera {
 
+/// By which kind of shader a pass made its picture.
+enum class DrawPath { fragment, compute };
+[[nodiscard]] std::string_view to_string(DrawPath path);
+
 /// What one pass did in one frame.
 struct PassReport {
     std::string name;
     std::string effect;
     PassStatus status = PassStatus::culled;
     std::string reason;
-    double cpu_ms = 0.0;  ///< prepare and draw on the calling thread
+    std::optional<DrawPath> path;  ///< none when nothing was drawn
+    double cpu_ms = 0.0;           ///< prepare and draw on the calling thread
     std::optional<double>
         gpu_ms;  ///< the newest timer query that has come back; none on software renderers, whose timers lie
 };

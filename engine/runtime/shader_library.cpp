@@ -36,9 +36,10 @@ int ShaderLibrary::reload(ShaderReader reader) {
 }
 
 std::unique_ptr<gl::Program> ShaderLibrary::compile(const ProgramDesc& desc) const {
-    const ShaderSource vertex = expand_shader(desc.vertex, desc.defines, reader_);
-    const ShaderSource fragment = expand_shader(desc.fragment, desc.defines, reader_);
-    auto program = std::make_unique<gl::Program>(gl_, vertex, fragment, to_string(desc));
+    const auto expand = [&](const std::string& file) { return expand_shader(file, desc.defines, reader_); };
+    auto program = std::make_unique<gl::Program>(
+        desc.compute.empty() ? gl::Program(gl_, expand(desc.vertex), expand(desc.fragment), to_string(desc))
+                             : gl::Program::make_compute(gl_, expand(desc.compute), to_string(desc)));
     if (!program->warnings().empty()) {
         log_.debug(program->label() + ": " + program->warnings());
     }

@@ -14,6 +14,7 @@ namespace {
 struct BenchArguments {
     std::vector<std::string> cases;
     ContextArguments context;
+    ComputeArgument compute;
     std::string resolution = "1024x1024";
     int repeats = 20;
     std::filesystem::path assets = std::filesystem::path(VISCERA_SOURCE_DIR) / "assets";
@@ -52,7 +53,8 @@ int bench(const BenchArguments& arguments) {
                        .width = width,
                        .height = height,
                        .repeats = arguments.repeats,
-                       .log = stderr_log()});
+                       .log = stderr_log(),
+                       .compute = arguments.compute.value()});
     for (const Case* one : chosen) {
         std::cerr << "bench: " << one->name << '\n';
         const std::size_t before = lab.rows().size();
@@ -87,6 +89,7 @@ void add_bench(CLI::App& app, int& exit_code) {
     const auto arguments = std::make_shared<BenchArguments>();
     command->add_option("CASE", arguments->cases, "cases to run; none: all of them");
     arguments->context.add_to(*command);
+    arguments->compute.add_to(*command);
     command->add_option("--resolution", arguments->resolution, "WxH");
     command->add_option("--repeats", arguments->repeats, "measured frames per figure")
         ->check(CLI::Range(1, 100000));

@@ -20,6 +20,7 @@ namespace {
 struct RenderArguments {
     SceneArguments scene;
     ContextArguments context;
+    ComputeArgument compute;
     std::filesystem::path folder = "out";
     std::optional<double> time_s;
     std::string frames;
@@ -110,6 +111,9 @@ void print_frame(const FrameReport& report) {
         if (pass.gpu_ms) {
             std::cout << std::setw(9) << *pass.gpu_ms << " ms gpu  ";
         }
+        if (pass.path == DrawPath::compute) {
+            std::cout << "compute  ";
+        }
         std::cout << pass.reason << '\n';
     }
 }
@@ -135,7 +139,7 @@ int render(const RenderArguments& arguments) {
 
     const std::unique_ptr<Context> context = arguments.context.open();
     const Registry registry = make_registry();
-    RendererOptions options{.log = stderr_log()};
+    RendererOptions options{.log = stderr_log(), .compute = arguments.compute.value()};
     if (!arguments.glsl.empty()) {
         options.shaders = shader_reader_from_folder(arguments.glsl);
     }
@@ -196,6 +200,7 @@ void add_render(CLI::App& app, int& exit_code) {
     const auto arguments = std::make_shared<RenderArguments>();
     arguments->scene.add_to(*command);
     arguments->context.add_to(*command);
+    arguments->compute.add_to(*command);
     command->add_option("-o,--output", arguments->folder, "folder for the pictures");
     command->add_option("--time", arguments->time_s, "time of a single picture [s], in place of the scene's");
     command->add_option("--frames", arguments->frames,

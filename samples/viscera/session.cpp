@@ -58,6 +58,22 @@ std::unique_ptr<Context> ContextArguments::open(const ContextOptions& wanted) co
     return context;
 }
 
+void ComputeArgument::add_to(CLI::App& command) {
+    command.add_option("--compute", text,
+                       "compute shaders in place of fragment shaders where there are both: auto (on hardware "
+                       "with OpenGL 4.3), on or off");
+}
+
+ComputeUse ComputeArgument::value() const {
+    if (text == "auto") {
+        return ComputeUse::automatic;
+    }
+    if (text != "on" && text != "off") {
+        throw Error(ErrorCode::usage, "--compute", "'" + text + "' is none of auto, on, off");
+    }
+    return text == "on" ? ComputeUse::on : ComputeUse::off;
+}
+
 void name_renderer(const ContextInfo& info, const LogCallback& log) {
     log(LogLevel::info, "renders with " + std::string(to_string(info.backend)) + ": " + info.renderer +
                             ", OpenGL " + info.version + (info.software ? " (software)" : ""));

@@ -11,6 +11,7 @@
 #include "engine/context/context.h"
 #include "engine/core/scene.h"
 #include "engine/runtime/effect.h"
+#include "engine/runtime/renderer.h"
 
 namespace viscera::app {
 
@@ -29,6 +30,15 @@ struct ContextArguments {
     void add_to(CLI::App& command);
     /// Opens the first that works, says on stderr which and why others were refused.
     [[nodiscard]] std::unique_ptr<Context> open(const ContextOptions& options = {}) const;
+};
+
+/// The option of every command that renders.
+struct ComputeArgument {
+    std::string text = "auto";
+
+    void add_to(CLI::App& command);
+    /// Throws Error(usage).
+    [[nodiscard]] ComputeUse value() const;
 };
 
 /// Says which renderer was chosen: software must never pass for hardware.

@@ -31,6 +31,7 @@ Esc                 quit
 
 struct ViewArguments {
     SceneArguments scene;
+    ComputeArgument compute;
     std::filesystem::path folder = "out";
     std::filesystem::path glsl;
     std::uint64_t frames = 0;  ///< ends after so many; 0: when the window is closed
@@ -203,7 +204,7 @@ int view(const ViewArguments& arguments) {
         create_window({.width = scene.width, .height = scene.height, .title = "viscera: " + scene.name});
     const LogCallback log = stderr_log();
     name_renderer(window->info(), log);
-    Renderer renderer(window->proc_address(), registry, {.log = log});
+    Renderer renderer(window->proc_address(), registry, {.log = log, .compute = arguments.compute.value()});
     renderer.set_scene(std::move(scene));
     Viewer(arguments, *window, renderer).run();
     return 0;
@@ -215,6 +216,7 @@ void add_view(CLI::App& app, int& exit_code) {
     CLI::App* command = app.add_subcommand("view", "Shows a scene in a window");
     const auto arguments = std::make_shared<ViewArguments>();
     arguments->scene.add_to(*command);
+    arguments->compute.add_to(*command);
     command->add_option("-o,--output", arguments->folder, "folder for pictures saved with S and E");
     command->add_option("--glsl", arguments->glsl, "folder from which F reads shaders again");
     command->add_option("--frames", arguments->frames, "ends after so many frames");

@@ -98,7 +98,7 @@ TEST(ShaderFiles, EmbeddedTextIsTheFilesOnDisk) {
 TEST(ShaderFiles, EveryFileIsUsed) {
     std::set<std::string> used;
     for (const ProgramDesc& program : all_programs()) {
-        for (const std::string& stage : {program.vertex, program.fragment}) {
+        for (const std::string& stage : {program.vertex, program.fragment, program.compute}) {
             if (!stage.empty()) {
                 const ShaderSource source = expand_shader(stage, program.defines, embedded_shader_reader());
                 used.insert(source.files.begin(), source.files.end());

@@ -113,6 +113,10 @@ Verdict validate(const std::filesystem::path& validator, const std::vector<Progr
     Stages stages(folder, reader);
     std::set<std::pair<std::string, std::string>> pairs;
     for (const ProgramDesc& program : programs) {
+        if (!program.compute.empty()) {
+            pairs.emplace(stages.add(program.compute, program.defines), std::string());
+            continue;
+        }
         const std::string vertex = stages.add(program.vertex, program.defines);
         const std::string fragment =
             program.fragment.empty() ? std::string() : stages.add(program.fragment, program.defines);

@@ -60,7 +60,8 @@ Stage::Stage(Lab& lab, const nlohmann::json& scene, Options options)
     : lab_(lab), options_(std::move(options)) {
     RendererOptions made{.log = lab.options().log,
                          .shaders = options_.shaders ? options_.shaders : bench_shaders(),
-                         .timers = false};
+                         .timers = false,
+                         .compute = lab.options().compute};
     if (options_.by_pass) {
         made.observer = [this](std::string_view pass, bool begins) { observe(pass, begins); };
     }

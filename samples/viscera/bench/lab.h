@@ -41,6 +41,7 @@ class Lab {
         int height = 1024;
         int repeats = 20;
         LogCallback log;
+        ComputeUse compute = ComputeUse::automatic;
     };
     Lab(Context& context, Options options);
 
