@@ -7,7 +7,9 @@
 #include "effects/contrast/sprite_effect.h"
 #include "effects/contrast/summarize_effect.h"
 #include "effects/filter/gaussian_effect.h"
+#include "effects/mesh/surface_effect.h"
 #include "effects/picture/image_effect.h"
+#include "effects/volume/limits_effect.h"
 #include "effects/volume/ray_cast_effect.h"
 
 namespace viscera {
@@ -38,6 +40,14 @@ void register_all(Registry& registry) {
                  [] { return std::make_unique<DistanceViewEffect>(); });
     registry.add("volume.ray_cast", "A volume, by a ray for each pixel.",
                  [] { return std::make_unique<volume::RayCastEffect>(); });
+    registry.add("volume.entry", "Where rays enter a volume, for volume.ray_cast.", [] {
+        return std::make_unique<volume::LimitsEffect>(volume::LimitsEffect::Side::entry);
+    });
+    registry.add("volume.exit", "Where rays leave a volume, for volume.ray_cast.", [] {
+        return std::make_unique<volume::LimitsEffect>(volume::LimitsEffect::Side::exit);
+    });
+    registry.add("mesh.surface", "Opaque meshes, with their depth.",
+                 [] { return std::make_unique<mesh::SurfaceEffect>(); });
     registry.add("filter.gaussian", "One direction of a Gaussian blur.",
                  [] { return std::make_unique<filter::GaussianEffect>(); });
     registry.add("picture.image", "A picture file as a target.",

@@ -47,10 +47,15 @@ RayFrame make_ray_frame(const View& view, const glm::dmat4& texture_to_world) {
     }
     const double share = view.orthographic ? 1.0 : 1.0 / plane;
     frame.near_far = glm::dvec2(near - plane, far - plane) * share;
-    frame.plane_depth = static_cast<float>(plane);
-    frame.depth_to_eye = view.orthographic ? glm::dvec2(-1.0 / view.projection[2][2],
-                                                        view.projection[3][2] / view.projection[2][2])
-                                           : glm::dvec2(view.projection[3][2], view.projection[2][2]);
+    const double scale = view.projection[2][2];
+    const double offset = view.projection[3][2];
+    if (view.orthographic) {
+        frame.depth_to_share = glm::dvec4((offset - 1.0) / scale - plane, -2.0 / scale, 0.0, 1.0);
+    } else {
+        // Perspective: share = (t of the plane - t) / (t - t of infinity).
+        const double infinity = 0.5 * (1.0 + scale);
+        frame.depth_to_share = glm::dvec4(infinity - 0.5 * offset / plane, 1.0, 1.0, -infinity);
+    }
     return frame;
 }
 

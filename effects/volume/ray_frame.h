@@ -16,9 +16,9 @@ struct RayFrame {
     std::array<glm::vec3, 3> direction{};
     std::array<glm::vec3, 3> world_direction{};
     glm::vec2 near_far{0.0F};
-    glm::vec2 depth_to_eye{
-        0.0F};  ///< distance along the view's axis = x / (ndc z + y), orthographic: x * ndc z + y
-    float plane_depth = 0.0F;  ///< of the plane [mm]
+    /// Window depth d as near_far has the planes, without the digits that 1 + d/far would cancel: with
+    /// t = 1 - d, share = (x - y t) / (z t + w).
+    glm::vec4 depth_to_share{0.0F};
 };
 
 /// `texture_to_world`: of the volume, not singular. Computed in double precision about the volume, so that

@@ -5,20 +5,12 @@
 #include <string>
 
 #include "engine/core/params.h"
+#include "engine/core/placement.h"
 #include "engine/core/volume.h"
 #include "engine/runtime/assets.h"
 #include "engine/runtime/frame.h"
 
 namespace viscera::volume {
-
-/// Where a volume is put: scaled and turned about its own centre, then moved.
-struct PlacementParams {
-    glm::dvec3 move_mm{0.0};
-    glm::dvec3 rotate_deg{0.0};  ///< about x, then y, then z
-    glm::dvec3 scale{1.0};       ///< negative: mirrored
-
-    void visit(ParamVisitor& v);
-};
 
 /// Which volume is shown, and where.
 struct SourceParams {
@@ -49,7 +41,5 @@ struct Source {
 
 /// Texture coordinates -> world with the placement. The determinant may be negative.
 [[nodiscard]] glm::dmat4 placed(const VolumeGrid& grid, const PlacementParams& placement);
-/// Whether a matrix can be inverted: finite, and no axis vanishes beside the others.
-[[nodiscard]] bool invertible(const glm::dmat4& matrix);
 
 }  // namespace viscera::volume
