@@ -37,7 +37,7 @@ std::string_view status_text(GLenum status) {
 }
 
 void attach(const Functions& gl, GLenum point, const Texture& texture) {
-    if (texture.target() == GL_TEXTURE_3D) {
+    if (texture.target() != GL_TEXTURE_2D) {
         gl.FramebufferTextureLayer(GL_FRAMEBUFFER, point, texture.id(), 0, 0);
     } else {
         gl.FramebufferTexture2D(GL_FRAMEBUFFER, point, texture.target(), texture.id(), 0);

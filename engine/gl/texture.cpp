@@ -22,12 +22,23 @@ std::size_t texel_count(const Extent& extent) {
 void check_extent(const Functions& gl, GLenum target, const Extent& extent, std::string_view label) {
     GLint limit = 0;
     gl.GetIntegerv(target == GL_TEXTURE_3D ? GL_MAX_3D_TEXTURE_SIZE : GL_MAX_TEXTURE_SIZE, &limit);
-    const auto [smallest, largest] = std::minmax({extent.width, extent.height, extent.depth});
-    if (smallest < 1 || largest > limit) {
-        throw Error(ErrorCode::limit, std::string(label),
-                    "a texture of " + to_text(extent) + " texels cannot be had: each side must be 1 to " +
-                        std::to_string(limit) + " on this device");
+    GLint depth_limit = limit;
+    if (target == GL_TEXTURE_2D_ARRAY) {
+        gl.GetIntegerv(GL_MAX_ARRAY_TEXTURE_LAYERS, &depth_limit);
     }
+    const bool some = std::min({extent.width, extent.height, extent.depth}) >= 1;
+    if (!some || std::max(extent.width, extent.height) > limit || extent.depth > depth_limit) {
+        throw Error(
+            ErrorCode::limit, std::string(label),
+            "a texture of " + to_text(extent) + " texels cannot be had: each side must be 1 to " +
+                std::to_string(limit) + " on this device" +
+                (depth_limit == limit ? "" : ", with 1 to " + std::to_string(depth_limit) + " layers"));
+    }
+}
+
+/// Whether the target takes its texels as a box.
+bool has_depth(GLenum target) {
+    return target == GL_TEXTURE_3D || target == GL_TEXTURE_2D_ARRAY;
 }
 
 }  // namespace
@@ -46,7 +57,7 @@ Texture Texture::make(const Functions& gl, GLenum target, Extent extent, Texture
     gl.BindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
     drain_errors(gl);
     const auto internal = static_cast<GLint>(format.internal);
-    if (target == GL_TEXTURE_3D) {
+    if (has_depth(target)) {
         gl.TexImage3D(target, 0, internal, extent.width, extent.height, extent.depth, 0, format.external,
                       format.type, nullptr);
     } else {
@@ -68,6 +79,11 @@ Texture Texture::make_2d(const Functions& gl, int width, int height, TextureForm
 
 Texture Texture::make_3d(const Functions& gl, Extent extent, TextureFormat format, std::string_view label) {
     return make(gl, GL_TEXTURE_3D, extent, format, label);
+}
+
+Texture Texture::make_2d_array(const Functions& gl, Extent extent, TextureFormat format,
+                               std::string_view label) {
+    return make(gl, GL_TEXTURE_2D_ARRAY, extent, format, label);
 }
 
 Texture Texture::from_image(const Functions& gl, const Image& image, std::string_view label) {
@@ -107,7 +123,7 @@ void Texture::upload_region(Extent offset, Extent size, std::span<const std::byt
     const Functions& api = gl();
     set_tight_unpacking(api);
     bind_for_editing();
-    if (target_ == GL_TEXTURE_3D) {
+    if (has_depth(target_)) {
         api.TexSubImage3D(target_, 0, offset.width, offset.height, offset.depth, size.width, size.height,
                           size.depth, format_.external, format_.type, texels.data());
     } else {

@@ -104,6 +104,44 @@ TEST_P(TextureTest, VolumesTakeTheirSlicesInOrder) {
     EXPECT_EQ(back, voxels);
 }
 
+TEST_P(TextureTest, ArraysTakeTheirLayersInOrder) {
+    gl::Texture array = gl::Texture::make_2d_array(gl(), {3, 2, 5}, gl::r16_format, "pages");
+    EXPECT_EQ(array.target(), static_cast<GLenum>(GL_TEXTURE_2D_ARRAY));
+    std::vector<std::uint16_t> texels(30);
+    for (std::size_t i = 0; i < texels.size(); ++i) {
+        texels[i] = static_cast<std::uint16_t>(257 * i);
+    }
+    array.upload(std::as_bytes(std::span(texels)));
+    const std::array<std::uint16_t, 2> two{4711, 815};
+    array.upload_region({2, 1, 3}, {1, 1, 2}, std::as_bytes(std::span(two)));
+    texels[3 * 6 + 1 * 3 + 2] = 4711;
+    texels[4 * 6 + 1 * 3 + 2] = 815;
+    std::vector<std::uint16_t> back(30);
+    gl::set_tight_packing(gl());
+    array.bind_for_editing();
+    gl().GetTexImage(GL_TEXTURE_2D_ARRAY, 0, GL_RED, GL_UNSIGNED_SHORT, back.data());
+    EXPECT_EQ(back, texels);
+}
+
+TEST_P(TextureTest, ArraysHaveALimitOfTheirOwnForLayers) {
+    GLint layers = 0;
+    gl().GetIntegerv(GL_MAX_ARRAY_TEXTURE_LAYERS, &layers);
+    GLint side = 0;
+    gl().GetIntegerv(GL_MAX_TEXTURE_SIZE, &side);
+    const auto make = [&](gl::Extent extent) {
+        return error_of([&] { (void)gl::Texture::make_2d_array(gl(), extent, gl::r16_format, "pages"); });
+    };
+    EXPECT_FALSE(make({1, 1, layers}));
+    EXPECT_FALSE(make({side, 1, 1}));
+    for (const gl::Extent extent : {gl::Extent{1, 1, layers + 1}, {side + 1, 1, 1}, {1, 0, 1}}) {
+        const auto error = make(extent);
+        ASSERT_TRUE(error);
+        EXPECT_EQ(error->code(), ErrorCode::limit);
+        EXPECT_THAT(error->what(), HasSubstr("pages"));
+        EXPECT_THAT(error->what(), HasSubstr(std::to_string(layers)));
+    }
+}
+
 TEST_P(TextureTest, EditingDisturbsNoUnitThatSamples) {
     const gl::Texture sampled = gl::Texture::make_2d(gl(), 2, 2, PixelFormat::rgba8, "sampled");
     for (GLuint unit = 0; unit < gl::editing_unit; ++unit) {
