@@ -63,7 +63,7 @@ float with_mouth(float d, const glm::vec3& q) {
 
 float nasal_cavity(const glm::vec3& q) {
     const float hollow = nasal_hollow_distance(q);
-    const float septum = q.x - 1.2F;
+    const float septum = q.x - 1.6F;
     const float lower = rod(q, {9.5F, -68.0F, -37.0F}, {9.0F, -28.0F, -37.0F}, 3.8F, 3.8F);
     const float middle = rod(q, {7.5F, -60.0F, -24.0F}, {7.0F, -28.0F, -26.0F}, 3.2F, 3.0F);
     return std::max({hollow, -septum, -lower, -middle});
@@ -77,7 +77,9 @@ float skin_distance(const glm::vec3& p) {
     d = join(d, ellipsoid(q, {0.0F, -30.0F, -28.0F}, {62.0F, 51.0F, 62.0F}), 22.0F);
     d = join(d, ellipsoid(q, {0.0F, -32.0F, -78.0F}, {51.0F, 45.0F, 29.0F}), 16.0F);
     d = join(d, neck(q), 16.0F);
-    d = join(d, ellipsoid(q, {0.0F, 8.0F, -14.0F}, {71.0F, 68.0F, 52.0F}), 14.0F);
+    d = join(d, ellipsoid(q, {0.0F, 8.0F, -14.0F}, {71.0F, 68.0F, 52.0F}), 26.0F);
+    d = join(d, ellipsoid(q, {0.0F, 46.0F, -4.0F}, {60.0F, 54.5F, 44.0F}), 20.0F);
+    d = join(d, ellipsoid(q, {56.0F, 24.0F, -34.0F}, {15.0F, 19.0F, 22.0F}), 16.0F);
     d = join(d, rod(q, {52.0F, -48.0F, -24.0F}, {62.0F, 0.0F, -24.0F}, 9.0F, 9.0F), 16.0F);
     float jaw = rod(q, {7.0F, -66.0F, -95.0F}, {39.0F, -14.0F, -84.0F}, 15.5F, 15.0F);
     jaw = join(jaw, rod(q, {39.0F, -14.0F, -84.0F}, {45.0F, -4.0F, -34.0F}, 15.0F, 14.0F), 10.0F);
