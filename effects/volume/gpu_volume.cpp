@@ -1,6 +1,7 @@
 #include "effects/volume/gpu_volume.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -66,6 +67,62 @@ gl::TextureFormat format_of(ScalarType type) {
     return type == ScalarType::f32 ? gl::texture_format(PixelFormat::r32f) : gl::r16_format;
 }
 
+constexpr std::array<std::string_view, 3> storage_names{"automatic", "texture_3d", "atlas"};
+
+bool fits_3d(const glm::ivec3& dims, const TextureLimits& limits) {
+    return std::max({dims.x, dims.y, dims.z}) <= limits.side_3d;
+}
+
+/// The least number of voxels made one along each axis with which a volume fits.
+int fitting_reduction(const glm::ivec3& dims, Storage storage, const TextureLimits& limits) {
+    for (int factor = 2;; ++factor) {
+        const glm::ivec3 reduced = (dims - 1) / factor + 1;
+        const bool as_3d = storage != Storage::atlas && fits_3d(reduced, limits);
+        const bool as_atlas =
+            storage != Storage::texture_3d && lay_out(reduced, limits.side_2d, limits.layers).has_value();
+        if (as_3d || as_atlas || reduced == glm::ivec3(1)) {
+            return factor;
+        }
+    }
+}
+
+std::string too_large(const glm::ivec3& dims, Storage storage, const TextureLimits& limits) {
+    std::string text = "a volume of " + std::to_string(dims.x) + " x " + std::to_string(dims.y) + " x " +
+                       std::to_string(dims.z) + " voxels cannot be had:";
+    if (storage != Storage::atlas) {
+        text += " a 3-D texture has at most " + std::to_string(limits.side_3d) + " voxels a side";
+    }
+    if (storage != Storage::texture_3d) {
+        text += std::string(storage == Storage::atlas ? "" : ", and") + " an atlas at most " +
+                std::to_string(limits.layers) + " layers of " + std::to_string(limits.side_2d) +
+                " texels a side, two of them spent on each slice's border";
+    }
+    return text;
+}
+
+/// A slice with rows and columns of its edge repeated around it.
+std::vector<std::byte> bordered(const std::vector<std::byte>& slice, const glm::ivec2& size,
+                                const glm::ivec2& before, const glm::ivec2& behind, std::size_t bytes) {
+    std::vector<std::byte> result;
+    const glm::ivec2 whole = size + before + behind;
+    result.reserve(static_cast<std::size_t>(whole.x) * static_cast<std::size_t>(whole.y) * bytes);
+    for (int y = -before.y; y < size.y + behind.y; ++y) {
+        const auto row =
+            static_cast<std::size_t>(std::clamp(y, 0, size.y - 1)) * static_cast<std::size_t>(size.x) * bytes;
+        const auto first = slice.begin() + static_cast<std::ptrdiff_t>(row);
+        const auto texel = static_cast<std::ptrdiff_t>(bytes);
+        const auto end = first + size.x * texel;
+        if (before.x > 0) {
+            result.insert(result.end(), first, first + texel);
+        }
+        result.insert(result.end(), first, end);
+        if (behind.x > 0) {
+            result.insert(result.end(), end - texel, end);
+        }
+    }
+    return result;
+}
+
 }  // namespace
 
 TexelMap texel_map(ScalarType type) {
@@ -102,12 +159,72 @@ std::vector<std::byte> texels(const Volume& volume, int channel, const VoxelBox&
     });
 }
 
-GpuVolume::GpuVolume(const gl::Functions& gl, const Source& source, int channel)
-    : channel_(channel),
-      map_(texel_map(source.volume().type)),
-      texture_(gl::Texture::make_3d(gl, extent(source.volume().grid.dims), format_of(source.volume().type),
-                                    source.volume().source)) {
+std::span<const std::string_view> choice_names(Storage) {
+    return storage_names;
+}
+
+TextureLimits TextureLimits::query(const gl::Functions& gl) {
+    TextureLimits limits;
+    gl.GetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &limits.side_3d);
+    gl.GetIntegerv(GL_MAX_TEXTURE_SIZE, &limits.side_2d);
+    gl.GetIntegerv(GL_MAX_ARRAY_TEXTURE_LAYERS, &limits.layers);
+    return limits;
+}
+
+std::optional<AtlasLayout> choose_storage(const glm::ivec3& dims, Storage storage,
+                                          const TextureLimits& limits, std::string_view where) {
+    if (storage != Storage::atlas && fits_3d(dims, limits)) {
+        return std::nullopt;
+    }
+    if (storage != Storage::texture_3d) {
+        if (const auto atlas = lay_out(dims, limits.side_2d, limits.layers)) {
+            return atlas;
+        }
+    }
+    throw Error(ErrorCode::limit, std::string(where),
+                too_large(dims, storage, limits) + "; volume.reduce = " +
+                    std::to_string(fitting_reduction(dims, storage, limits)) + " would fit");
+}
+
+GpuVolume::GpuVolume(const gl::Functions& gl, const Source& source, int channel, Storage storage)
+    : channel_(channel), storage_(storage), texture_(make_texture(gl, source.volume())) {
     update(source);
+}
+
+gl::Texture GpuVolume::make_texture(const gl::Functions& gl, const Volume& volume) {
+    const glm::ivec3 dims = volume.grid.dims;
+    const auto atlas = choose_storage(dims, storage_, TextureLimits::query(gl), volume.source);
+    const gl::TextureFormat format = format_of(volume.type);
+    gl::Texture texture =
+        atlas ? gl::Texture::make_2d_array(gl, {atlas->page().x, atlas->page().y, atlas->layers}, format,
+                                           volume.source)
+              : gl::Texture::make_3d(gl, extent(dims), format, volume.source);
+    dims_ = dims;
+    type_ = volume.type;
+    map_ = texel_map(type_);
+    atlas_ = atlas;
+    return texture;
+}
+
+void GpuVolume::upload(const Volume& volume, const VoxelBox& box, double empty) {
+    if (!atlas_) {
+        texture_.upload_region(extent(box.first), extent(box.size), texels(volume, channel_, box, empty));
+        return;
+    }
+    // What touches a face goes on into the border.
+    const glm::ivec2 before(box.first.x == 0 ? AtlasLayout::border : 0,
+                            box.first.y == 0 ? AtlasLayout::border : 0);
+    const glm::ivec2 behind(box.first.x + box.size.x == dims_.x ? AtlasLayout::border : 0,
+                            box.first.y + box.size.y == dims_.y ? AtlasLayout::border : 0);
+    const glm::ivec2 size = glm::ivec2(box.size) + before + behind;
+    for (int z = box.first.z; z < box.first.z + box.size.z; ++z) {
+        const glm::ivec3 place =
+            atlas_->place_of(z) + glm::ivec3(box.first.x - before.x, box.first.y - before.y, 0);
+        const VoxelBox slice{{box.first.x, box.first.y, z}, {box.size.x, box.size.y, 1}};
+        texture_.upload_region(extent(place), {size.x, size.y, 1},
+                               bordered(texels(volume, channel_, slice, empty), glm::ivec2(box.size), before,
+                                        behind, texture_.format().bytes_per_pixel));
+    }
 }
 
 void GpuVolume::update(const Source& source) {
@@ -121,14 +238,24 @@ void GpuVolume::update(const Source& source) {
         boxes = source.live->changes_since(version_, everything);
     }
     if (everything) {
-        boxes = {{glm::ivec3(0), volume.grid.dims}};
+        if (dims_ != volume.grid.dims || type_ != volume.type) {
+            texture_ = make_texture(texture_.gl(), volume);
+        }
+        boxes = {{glm::ivec3(0), dims_}};
     }
     const double lowest = source.statistics.min;
     const double empty = (lowest - volume.intercept) / volume.slope;
     for (const VoxelBox& box : boxes) {
-        texture_.upload_region(extent(box.first), extent(box.size), texels(volume, channel_, box, empty));
+        upload(volume, box, empty);
     }
     version_ = source.version();
+}
+
+void GpuVolume::set(const gl::Program& program) const {
+    if (atlas_) {
+        program.set("u_volume_size", atlas_->dims);
+        program.set("u_atlas_tiles", atlas_->tiles);
+    }
 }
 
 }  // namespace viscera::volume

@@ -1,10 +1,15 @@
 #pragma once
 
+#include "effects/volume/atlas.h"
 #include "effects/volume/classification.h"
 #include "effects/volume/source.h"
+#include "engine/gl/program.h"
 #include "engine/gl/texture.h"
 
 namespace viscera::volume {
+
+enum class Storage { automatic, texture_3d, atlas };
+[[nodiscard]] std::span<const std::string_view> choice_names(Storage storage);
 
 /// How a stored number comes back from a texture fetch: the `value` of this map is the stored number.
 /// Integers are uploaded as 16 bits, 8-bit ones as 257 n: filtering 8-bit textures is quantised to 8 bits on
@@ -16,20 +21,47 @@ namespace viscera::volume {
 [[nodiscard]] std::vector<std::byte> texels(const Volume& volume, int channel, const VoxelBox& box,
                                             double empty);
 
-/// One channel of a volume as a 3-D texture.
+/// What textures of a device can hold.
+struct TextureLimits {
+    int side_3d = 0;  ///< of a 3-D texture [texels]
+    int side_2d = 0;  ///< of a layer of an array
+    int layers = 0;
+
+    [[nodiscard]] static TextureLimits query(const gl::Functions& gl);
+};
+
+/// How a volume is stored on a device: none is a 3-D texture. Throws Error(limit) naming `where`, which says
+/// what is needed, what there is, and what `reduce` would fit.
+[[nodiscard]] std::optional<AtlasLayout> choose_storage(const glm::ivec3& dims, Storage storage,
+                                                        const TextureLimits& limits, std::string_view where);
+
+/// One channel of a volume on the GPU, as glsl/volume/storage.glsl reads it.
 class GpuVolume {
   public:
-    /// Throws Error(limit) that says what is needed, what there is, and what `reduce` would fit.
-    GpuVolume(const gl::Functions& gl, const Source& source, int channel);
+    /// Throws Error(limit) as choose_storage(), or when memory is short.
+    GpuVolume(const gl::Functions& gl, const Source& source, int channel,
+              Storage storage = Storage::automatic);
 
     /// Uploads what has changed since the last call.
     void update(const Source& source);
+    /// For the sampler u_volume.
     [[nodiscard]] const gl::Texture& texture() const { return texture_; }
+    /// Whether programs need STORAGE_ATLAS.
+    [[nodiscard]] bool is_atlas() const { return atlas_.has_value(); }
+    /// Sets what else storage.glsl needs.
+    void set(const gl::Program& program) const;
     [[nodiscard]] const TexelMap& map() const { return map_; }
 
   private:
+    [[nodiscard]] gl::Texture make_texture(const gl::Functions& gl, const Volume& volume);
+    void upload(const Volume& volume, const VoxelBox& box, double empty);
+
     int channel_;
+    Storage storage_;
+    glm::ivec3 dims_{0};
+    ScalarType type_ = ScalarType::u8;
     TexelMap map_;
+    std::optional<AtlasLayout> atlas_;
     gl::Texture texture_;
     std::uint64_t version_ = 0;
 };

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "effects/volume/crop.h"
 #include "effects/volume/ray_frame.h"
 #include "engine/core/error.h"
 #include "engine/core/hash.h"
@@ -14,7 +16,7 @@ namespace viscera::volume {
 namespace {
 
 constexpr int brick_size = 4;
-constexpr int slab_limit = 30000;  // llvmpipe stops loops at 65,535 turns; skipping takes up to two a slab
+constexpr int blue_noise_size = 32;
 
 RayFunction function_for(Technique technique) {
     switch (technique) {
@@ -27,6 +29,7 @@ RayFunction function_for(Technique technique) {
         case Technique::xray:
             return RayFunction::xray;
         case Technique::isosurface:
+            return RayFunction::isosurface;
         case Technique::composite:
             break;
     }
@@ -44,14 +47,29 @@ void RayCastEffect::validate() const {
         throw Error(ErrorCode::scene, "/volume", "needs either a file or a host's volume");
     }
     params_.transfer_function.validate();
+    params_.look.validate();
 }
 
 std::vector<Port> RayCastEffect::ports() const {
-    return {{.name = "colour",
-             .access = Access::write,
-             .target = "volume.colour",
-             .doc = "Colour, premultiplied by opacity, and opacity.",
-             .format = PixelFormat::rgba16f}};
+    std::vector<Port> ports{{.name = "colour",
+                             .access = Access::write,
+                             .target = "volume.colour",
+                             .doc = "Colour, premultiplied by opacity, and opacity.",
+                             .format = PixelFormat::rgba16f,
+                             .passthrough = "background"},
+                            {.name = "depth",
+                             .target = "mesh.depth",
+                             .doc = "Depth of opaque surfaces, drawn with the same camera: rays end there.",
+                             .optional = true},
+                            {.name = "background",
+                             .target = "mesh.colour",
+                             .doc = "Picture behind, premultiplied by its opacity: the volume goes over it.",
+                             .optional = true}};
+    if (params_.sampling.limits != Limits::analytic) {
+        ports.push_back({.name = "entry", .target = "volume.entry", .doc = "Where rays enter."});
+        ports.push_back({.name = "exit", .target = "volume.exit", .doc = "Where rays leave."});
+    }
+    return ports;
 }
 
 std::span<const ProgramDesc> RayCastEffect::programs() const {
@@ -61,30 +79,54 @@ std::span<const ProgramDesc> RayCastEffect::programs() const {
     const bool by_file = !params_.function && !params_.transfer_function.file.empty();
     const RayFunction given = params_.function.value_or(RayFunction::composite);
     for (const RayFunction function : {RayFunction::composite, RayFunction::mip, RayFunction::minip,
-                                       RayFunction::average, RayFunction::xray}) {
+                                       RayFunction::average, RayFunction::xray, RayFunction::isosurface}) {
         if (!by_file && function != given) {
             continue;
         }
-        for (const bool skip : {false, true}) {
+        for (const Skipping skipping : {Skipping::none, Skipping::empty, Skipping::adaptive}) {
+            if (skipping == Skipping::adaptive &&
+                (params_.sampling.tolerance == 0.0 || function != RayFunction::composite)) {
+                continue;
+            }
             ProgramDesc program{"common/fullscreen.vert", "volume/ray_cast.frag", {}};
             if (function == RayFunction::composite) {
                 program.defines.emplace_back("COMPOSITE");
-                program.defines.push_back("SCHEME " +
-                                          std::to_string(static_cast<int>(params_.sampling.scheme)));
+            } else if (function == RayFunction::isosurface) {
+                add_defines(params_.isosurface, true, program.defines);
             } else {
                 program.defines.push_back("PROJECTION " + std::to_string(static_cast<int>(function) - 1));
                 if (params_.threshold) {
                     program.defines.emplace_back("THRESHOLD");
                 }
             }
+            add_defines(params_.sampling, program.defines);
             if (params_.transfer_function.interpolate) {
                 program.defines.emplace_back("TRANSFER_LINEAR");
             }
-            if (skip) {
+            if (skipping != Skipping::none) {
                 program.defines.emplace_back("SKIP");
             }
-            programs_.push_back(std::move(program));
-            variants_.push_back({function, skip});
+            if (skipping == Skipping::adaptive) {
+                program.defines.emplace_back("ADAPTIVE");
+            }
+            if (params_.sampling.limits != Limits::analytic) {
+                program.defines.push_back("LIMITS " +
+                                          std::to_string(static_cast<int>(params_.sampling.limits)));
+            }
+            const std::vector<std::string> clip = clip_defines(params_.look.clip_planes);
+            program.defines.insert(program.defines.end(), clip.begin(), clip.end());
+            if (function != RayFunction::composite) {
+                programs_.push_back(std::move(program));
+                variants_.push_back({function, skipping});
+                continue;
+            }
+            for (const Look::Variant& look : Look::variants(params_.look, params_.transfer_function)) {
+                const std::vector<std::string> defines = Look::defines(params_.look, look);
+                programs_.push_back(program);
+                programs_.back().defines.insert(programs_.back().defines.end(), defines.begin(),
+                                                defines.end());
+                variants_.push_back({function, skipping, look});
+            }
         }
     }
     // All of them again for what else may be in the picture, and as compute shaders.
@@ -108,30 +150,31 @@ std::span<const ProgramDesc> RayCastEffect::programs() const {
 }
 
 void RayCastEffect::find_crop() {
-    const glm::ivec3 dims = source_->volume().grid.dims;
-    const glm::dvec3 n(dims);
-    for (int a = 0; a < 3; ++a) {
-        const double first = std::min(params_.crop.first[a], n[a]);
-        const double last = params_.crop.size[a] > 0.0 ? std::min(first + params_.crop.size[a], n[a]) : n[a];
-        box_min_[a] = first / n[a];
-        box_max_[a] = last / n[a];
-        crop_.first[a] = static_cast<int>(std::floor(first));
-        crop_.size[a] = static_cast<int>(std::ceil(last)) - crop_.first[a];
-    }
+    const CropBox box = crop_box(params_.crop, source_->volume().grid.dims);
+    box_min_ = box.low;
+    box_max_ = box.high;
+    crop_ = box.voxels;
 }
 
 void RayCastEffect::find_function(Prepare& prepare) {
     function_ = load_function(params_.transfer_function, prepare.assets());
     variant_.function = params_.function.value_or(function_for(function_.technique));
+    variant_.look = projects() ? Look::Variant{} : Look::variant(params_.look, function_);
+}
+
+/// Texels between the least and the greatest value.
+TexelRange RayCastEffect::texel_range(const TexelMap& stored_of_texel) const {
+    const Volume& volume = source_->volume();
+    const TexelMap map{volume.slope * stored_of_texel.scale, volume.value_of(stored_of_texel.offset)};
+    const double a = map.texel_of(source_->statistics.min);
+    const double b = map.texel_of(source_->statistics.max);
+    return {std::min(a, b), std::max(a, b)};
 }
 
 void RayCastEffect::make_table(const gl::Functions& gl, const TexelMap& stored_of_texel) {
     const Volume& volume = source_->volume();
     const TexelMap map{volume.slope * stored_of_texel.scale, volume.value_of(stored_of_texel.offset)};
-    TexelRange range{map.texel_of(source_->statistics.min), map.texel_of(source_->statistics.max)};
-    if (range.low > range.high) {
-        std::swap(range.low, range.high);
-    }
+    const TexelRange range = texel_range(stored_of_texel);
     const int entries = params_.transfer_function.entries;
     const ExtinctionKnots knots = extinction_knots(function_, map, range);
     ClassificationTable table = tabulate(knots, range, entries);
@@ -144,6 +187,92 @@ void RayCastEffect::make_table(const gl::Functions& gl, const TexelMap& stored_o
     table_.emplace(gl::Texture::make_2d(gl, entries, 1, PixelFormat::rgba32f, "transfer function"));
     table_->upload(std::as_bytes(std::span(table.entries)));
     table_place_ = table.place;
+}
+
+/// Stored numbers that can change the picture; empty where every number can.
+std::vector<StoredRange> RayCastEffect::visible() const {
+    const Volume& volume = source_->volume();
+    const TexelMap map{volume.slope, volume.intercept};
+    const double a = map.texel_of(source_->statistics.min);
+    const double b = map.texel_of(source_->statistics.max);
+    const TexelRange all{std::min(a, b), std::max(a, b)};
+    const int entries = params_.transfer_function.entries;
+    std::vector<StoredRange> shown = stored_ranges(function_, map, all, entries);
+    if (!projects()) {
+        look_.widen(params_.look, function_, map, all, entries, shown);
+    }
+    const auto at_least = [&](double value) {
+        const double stored = map.texel_of(value);
+        const double slack = 1e-6 * (1.0 + std::abs(stored));
+        constexpr float far = std::numeric_limits<float>::infinity();
+        return volume.slope > 0.0 ? StoredRange{static_cast<float>(stored - slack), far}
+                                  : StoredRange{-far, static_cast<float>(stored + slack)};
+    };
+    switch (variant_.function) {
+        case RayFunction::composite:
+            return shown;
+        case RayFunction::isosurface:
+            return stored_ranges(params_.isosurface, map);
+        case RayFunction::xray:
+            return {at_least(-1000.0)};
+        case RayFunction::average:
+            return params_.threshold ? std::vector{at_least(*params_.threshold)} : std::vector<StoredRange>{};
+        case RayFunction::mip:
+        case RayFunction::minip:
+            break;
+    }
+    // What is not seen may be left out of an extreme only when nothing that is seen is overruled by it.
+    const bool upwards = (variant_.function == RayFunction::mip) == (volume.slope > 0.0);
+    if (shown.empty()) {
+        return {{0.0F, -1.0F}};
+    }
+    if (shown.size() == 1 && (upwards ? std::isinf(shown[0].high) : std::isinf(shown[0].low))) {
+        return shown;
+    }
+    return {};
+}
+
+/// How much colour and opacity change from the least stored number up to each, for long slabs.
+SmoothRule RayCastEffect::smooth_rule() const {
+    const Volume& volume = source_->volume();
+    const TexelMap map{volume.slope, volume.intercept};
+    const double a = map.texel_of(source_->statistics.min);
+    const double b = map.texel_of(source_->statistics.max);
+    double diagonal_mm = 0.0;
+    for (int axis = 0; axis < 3; ++axis) {
+        diagonal_mm += glm::length(glm::dvec3(texture_to_world_[axis]));
+    }
+    return make_smooth_rule(extinction_knots(function_, map, {std::min(a, b), std::max(a, b)}),
+                            std::min(a, b), std::max(a, b), diagonal_mm, params_.sampling.tolerance);
+}
+
+/// Finds which bricks show anything; false when none does.
+bool RayCastEffect::find_bricks(Prepare& prepare) {
+    variant_.skipping = Skipping::none;
+    if (!params_.sampling.skip) {
+        return true;
+    }
+    const std::vector<StoredRange> ranges = visible();
+    if (ranges.empty() && projects()) {
+        return true;
+    }
+    // A cell or slab belongs to the brick of its middle; linear reconstruction needs half a voxel more.
+    const int border = static_cast<int>(std::ceil(reach(params_.sampling, lattice_) + 0.5));
+    bricks_ = load_bricks(prepare.assets(), *source_, params_.volume.channel, brick_size, border);
+    const std::uint64_t key = Hash().add(parameters_key_).add(bricks_.get()).add(bricks_->version).value();
+    // The rule knows of the transfer function alone.
+    const bool adaptive = params_.sampling.tolerance > 0.0 && !projects() && !params_.look.used(variant_.look);
+    skip_map_.update(bricks_->grid, ranges, crop_, adaptive ? smooth_rule() : SmoothRule{}, key);
+    if (skip_map_.occupancy() == 0.0) {
+        return false;
+    }
+    // Where nothing can be left out, looking for it only costs.
+    if (adaptive && skip_map_.smooth_share() > 0.0) {
+        variant_.skipping = Skipping::adaptive;
+    } else if (skip_map_.occupancy() < 0.98) {
+        variant_.skipping = Skipping::empty;
+    }
+    return true;
 }
 
 Work RayCastEffect::prepare(Prepare& prepare) {
@@ -166,41 +295,25 @@ Work RayCastEffect::prepare(Prepare& prepare) {
         prepare.log().fault("volume.singular", "the volume's placement is singular; it is not drawn");
         return Work::idle("the volume's placement is singular");
     }
-    const glm::dvec3 n(volume.grid.dims);
-    double spacing = 1e300;
-    double diagonal = 0.0;
-    for (int a = 0; a < 3; ++a) {
-        const double length = glm::length(glm::dvec3(texture_to_world_[a]));
-        spacing = std::min(spacing, length / n[a]);
-        diagonal += length;
+    if (const std::string_view missing = look_.load(params_.look, prepare); !missing.empty()) {
+        return Work::idle(missing);
     }
-    const bool pairs = !projects() && params_.sampling.scheme == Scheme::gauss;
-    slab_mm_ = params_.sampling.step * spacing * (pairs ? 2.0 : 1.0);
-    if (slab_mm_ < diagonal / slab_limit) {
-        prepare.log().fault("volume.step", "the step would take more than " + std::to_string(slab_limit) +
-                                               " slabs through the volume; it is made longer");
-        slab_mm_ = diagonal / slab_limit;
+    const ClippedBox box = clipped_box(box_min_, box_max_, texture_to_world_, params_.look.clip_planes);
+    if (box.empty()) {
+        return Work::idle("everything is clipped");
     }
-    const double slab_voxels = params_.sampling.step * (pairs ? 2.0 : 1.0);
-    const int border = static_cast<int>(std::ceil((pairs ? 0.289 * slab_voxels : 0.0) + 0.5));
-    variant_.skip = params_.sampling.skip && !projects();
-    if (variant_.skip) {
-        bricks_ = load_bricks(prepare.assets(), *source_, params_.volume.channel, brick_size, border);
-        const TexelMap map{volume.slope, volume.intercept};
-        const double a = map.texel_of(source_->statistics.min);
-        const double b = map.texel_of(source_->statistics.max);
-        const std::vector<StoredRange> visible = stored_ranges(
-            function_, map, {std::min(a, b), std::max(a, b)}, params_.transfer_function.entries);
-        skip_map_.update(bricks_->grid, visible, crop_,
-                         Hash().add(parameters_key_).add(bricks_.get()).add(bricks_->version).value());
-        if (skip_map_.occupancy() == 0.0) {
-            return Work::idle("the transfer function shows nothing of the volume");
-        }
-        variant_.skip = skip_map_.occupancy() < 0.98;
+    lattice_ = make_lattice(params_.sampling, texture_to_world_, volume.grid.dims, prepare.log());
+    if (!find_bricks(prepare)) {
+        return Work::idle("nothing of the volume is to be seen");
     }
     const View& view = prepare.frame().eye();
-    const Bounds bounds{glm::vec3(box_min_), glm::vec3(box_max_)};
+    const Bounds bounds{glm::vec3(box.min), glm::vec3(box.max)};
     const glm::ivec2 size = prepare.size("colour");
+    variant_.surface = prepare.has("depth");
+    variant_.background = prepare.has("background");
+    if (params_.sampling.limits != Limits::analytic && !prepare.has("exit")) {
+        return Work::idle("what limits the rays is not in the view");
+    }
     const PixelRect region = project_bounds(bounds, view.view_projection() * texture_to_world_, size);
     if (region.empty()) {
         return Work::idle("the volume lies outside the view");
@@ -209,12 +322,30 @@ Work RayCastEffect::prepare(Prepare& prepare) {
                                   .add(parameters_key_)
                                   .add(source_->key)
                                   .add(source_->version())
+                                  .add(look_.key())
                                   .add(view.view)
                                   .add(view.projection)
                                   .value();
-    return region == PixelRect{0, 0, size.x, size.y}
+    return variant_.background || region == PixelRect{0, 0, size.x, size.y}
                ? Work::all(key)
                : Work::in_region(region, "only where the volume can be seen", key);
+}
+
+void RayCastEffect::bind_blue_noise(const Pass& pass, const gl::Program& program) {
+    if (!blue_noise_) {
+        const std::vector<std::uint16_t> ranks = blue_noise(blue_noise_size, 1);
+        std::vector<float> values(ranks.size());
+        std::ranges::transform(ranks, values.begin(), [&](std::uint16_t rank) {
+            return (static_cast<float>(rank) + 0.5F) / static_cast<float>(ranks.size());
+        });
+        blue_noise_.emplace(gl::Texture::make_2d(pass.gl(), blue_noise_size, blue_noise_size,
+                                                 PixelFormat::r32f, "blue noise"));
+        blue_noise_->upload(std::as_bytes(std::span(values)));
+    }
+    pass.bind(program, "u_blue_noise", *blue_noise_, gl::Filter::nearest, gl::Wrap::repeat);
+    const int seed = params_.sampling.seed;
+    program.set("u_blue_noise_shift",
+                glm::ivec2((seed * 13) % blue_noise_size, (seed * 7) % blue_noise_size));
 }
 
 void RayCastEffect::draw(const Pass& pass) {
@@ -241,8 +372,17 @@ void RayCastEffect::draw(const Pass& pass) {
     program.set("u_near_far", frame.near_far);
     program.set("u_box_min", glm::vec3(box_min_));
     program.set("u_box_max", glm::vec3(box_max_));
-    program.set("u_slab", static_cast<float>(slab_mm_));
-    program.set("u_slab_limit", slab_limit);
+    program.set("u_slab", static_cast<float>(lattice_.slab_mm));
+    program.set("u_slab_limit", lattice_.slab_limit);
+    program.set("u_voxels", glm::vec3(volume.grid.dims));
+    if (params_.sampling.jitter == Jitter::blue_noise) {
+        bind_blue_noise(pass, program);
+    }
+    program.set("u_seed", static_cast<unsigned>(params_.sampling.seed));
+    if (variant_.function == RayFunction::isosurface) {
+        volume::bind(params_.isosurface, TexelMap{volume.slope * map.scale, volume.value_of(map.offset)},
+                     params_.sampling.termination, program);
+    }
     program.set("u_transfer_place", glm::vec2(table_place_));
     program.set("u_depth_limit", params_.sampling.termination > 0.0
                                      ? static_cast<float>(-std::log(params_.sampling.termination))
@@ -258,10 +398,30 @@ void RayCastEffect::draw(const Pass& pass) {
     }
     pass.bind(program, "u_volume", gpu.texture());
     pass.bind(program, "u_transfer", *table_, gl::Filter::nearest);
-    if (variant_.skip) {
+    if (!params_.look.clip_planes.empty()) {
+        set_clips(program, params_.look.clip_planes, texture_to_world_);
+    }
+    if (!projects()) {
+        look_.bind(params_.look, variant_.look,
+                   {*source_, params_.volume.channel, function_, texture_to_world_,
+                    TexelMap{value_scale, value_offset}, texel_range(map), params_.transfer_function.entries},
+                   pass, program);
+    }
+    if (variant_.skipping != Skipping::none) {
         program.set("u_bricks_per_unit",
                     glm::vec3(glm::dvec3(volume.grid.dims) / static_cast<double>(brick_size)));
         pass.bind(program, "u_bricks", skip_map_.texture(pass.gl()), gl::Filter::nearest);
+    }
+    if (variant_.surface) {
+        program.set("u_depth_to_share", frame.depth_to_share);
+        pass.bind(program, "u_depth", "depth");
+    }
+    if (variant_.background) {
+        pass.bind(program, "u_background", "background");
+    }
+    if (params_.sampling.limits != Limits::analytic) {
+        pass.bind(program, "u_entry", "entry");
+        pass.bind(program, "u_exit", "exit");
     }
     if (variant_.compute) {
         pass.dispatch(program, "colour");

@@ -22,10 +22,13 @@ class RayCastEffect final : public Effect {
     void draw(const Pass& pass) override;
 
   private:
+    /// `adaptive`: also takes long slabs where the transfer function hardly changes.
+    enum class Skipping { none, empty, adaptive };
     /// What the programs differ in besides the parameters.
     struct Variant {
         RayFunction function = RayFunction::composite;
-        bool skip = false;
+        Skipping skipping = Skipping::none;
+        Look::Variant look;
         bool surface = false;     ///< rays end at opaque surfaces
         bool background = false;  ///< the picture goes over another
         bool compute = false;
@@ -33,14 +36,19 @@ class RayCastEffect final : public Effect {
     };
     void find_function(Prepare& prepare);
     void make_table(const gl::Functions& gl, const TexelMap& stored_of_texel);
+    [[nodiscard]] TexelRange texel_range(const TexelMap& stored_of_texel) const;
     [[nodiscard]] bool projects() const { return variant_.function != RayFunction::composite; }
+    [[nodiscard]] std::vector<StoredRange> visible() const;
+    [[nodiscard]] SmoothRule smooth_rule() const;
+    [[nodiscard]] bool find_bricks(Prepare& prepare);
 
     void find_crop();
+    void bind_blue_noise(const Pass& pass, const gl::Program& program);
 
     RayCastParams params_;
     mutable std::vector<ProgramDesc> programs_;
-    mutable std::vector<Variant> variants_;      ///< of each program
-    Variant variant_;                            ///< of this frame
+    mutable std::vector<Variant> variants_;  ///< of each program
+    Variant variant_;                        ///< of this frame
     std::uint64_t parameters_key_ = 0;
     std::shared_ptr<const Source> source_;
     TransferFunction function_;
@@ -50,7 +58,9 @@ class RayCastEffect final : public Effect {
     glm::dvec3 box_min_{0.0};
     glm::dvec3 box_max_{1.0};
     VoxelBox crop_;
-    double slab_mm_ = 1.0;
+    Lattice lattice_;
+    Look look_;
+    std::optional<gl::Texture> blue_noise_;
     std::optional<gl::Texture> table_;
     std::uint64_t table_key_ = 0;
     glm::dvec2 table_place_{0.0};

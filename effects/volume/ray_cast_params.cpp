@@ -5,33 +5,13 @@
 namespace viscera::volume {
 namespace {
 
-constexpr std::array<std::string_view, 5> function_names{"composite", "mip", "minip", "average", "xray"};
-constexpr std::array<std::string_view, 2> scheme_names{"midpoint", "gauss"};
+constexpr std::array<std::string_view, 6> function_names{"composite", "mip",  "minip",
+                                                         "average",   "xray", "isosurface"};
 
 }  // namespace
 
 std::span<const std::string_view> choice_names(RayFunction) {
     return function_names;
-}
-std::span<const std::string_view> choice_names(Scheme) {
-    return scheme_names;
-}
-
-void SamplingParams::visit(ParamVisitor& v) {
-    v.field({.name = "step",
-             .doc = "Mean distance of samples in units of the smallest voxel spacing.",
-             .unit = "voxel",
-             .min = 0.0,
-             .min_excluded = true},
-            step);
-    v.field({.name = "scheme", .doc = "How a slab of the ray is integrated."}, scheme);
-    v.field({.name = "termination",
-             .doc = "A ray stops when less than this of what lies behind could still be seen; 0: never.",
-             .min = 0.0,
-             .max = 1.0},
-            termination);
-    v.field({.name = "skip", .doc = "Leaps over bricks that cannot show anything; the picture is the same."},
-            skip);
 }
 
 void CropParams::visit(ParamVisitor& v) {
@@ -62,6 +42,8 @@ void RayCastParams::visit(ParamVisitor& v) {
     v.field({.name = "crop", .doc = "Part of the volume that is shown."}, crop);
     v.field({.name = "xray", .doc = "Attenuation and film (xray)."}, xray);
     v.field({.name = "threshold", .doc = "Values below it are dropped (mip, minip, average)."}, threshold);
+    v.field({.name = "isosurface", .doc = "Surfaces of constant value (isosurface)."}, isosurface);
+    look.visit(v);
 }
 
 }  // namespace viscera::volume

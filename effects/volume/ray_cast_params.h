@@ -4,26 +4,16 @@
 #include <string>
 #include <vector>
 
+#include "effects/volume/isosurface.h"
+#include "effects/volume/look.h"
+#include "effects/volume/sampling.h"
 #include "effects/volume/source.h"
 #include "effects/volume/transfer_params.h"
 
 namespace viscera::volume {
 
-enum class RayFunction { composite, mip, minip, average, xray };
+enum class RayFunction { composite, mip, minip, average, xray, isosurface };
 [[nodiscard]] std::span<const std::string_view> choice_names(RayFunction function);
-
-/// How a slab of the ray is integrated.
-enum class Scheme { midpoint, gauss };
-[[nodiscard]] std::span<const std::string_view> choice_names(Scheme scheme);
-
-struct SamplingParams {
-    double step = 0.5;
-    Scheme scheme = Scheme::gauss;
-    double termination = 1.0 / 512.0;
-    bool skip = true;
-
-    void visit(ParamVisitor& v);
-};
 
 /// Part of the volume that is shown [voxels], a box; size 0 of an axis: all of it.
 struct CropParams {
@@ -49,6 +39,8 @@ struct RayCastParams {
     CropParams crop;
     XrayParams xray;
     std::optional<double> threshold;
+    IsosurfaceParams isosurface;
+    LookParams look;
 
     void visit(ParamVisitor& v);
 };

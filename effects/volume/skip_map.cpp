@@ -6,6 +6,12 @@
 #include "engine/core/hash.h"
 
 namespace viscera::volume {
+namespace {
+
+constexpr int kind_occupied = 32;
+constexpr int kind_smooth = 64;
+
+}  // namespace
 
 std::shared_ptr<Bricks> load_bricks(Assets& assets, const Source& source, int channel, int size, int border) {
     const std::uint64_t key = Hash().add(source.key).add(channel).add(size).add(border).value();
@@ -32,8 +38,53 @@ std::shared_ptr<Bricks> load_bricks(Assets& assets, const Source& source, int ch
     return bricks;
 }
 
+SmoothRule make_smooth_rule(const ExtinctionKnots& knots, double low, double high, double way_mm,
+                            double tolerance) {
+    SmoothRule rule{.variation = std::vector<float>(table_entries),
+                    .tolerance = static_cast<float>(tolerance)};
+    const double entries = table_entries - 1;
+    rule.scale = high > low ? entries / (high - low) : 0.0;
+    rule.offset = -low * rule.scale;
+    double sum = 0.0;
+    glm::dvec4 before = knots.classify(low);
+    for (std::size_t i = 1; i < rule.variation.size(); ++i) {
+        const glm::dvec4 here = knots.classify(low + (high - low) * static_cast<double>(i) / entries);
+        const glm::dvec4 change = glm::abs(here - before);
+        sum += change.a * way_mm + std::max({change.r, change.g, change.b});
+        rule.variation[i] = static_cast<float>(sum);
+        before = here;
+    }
+    return rule;
+}
+
+namespace {
+
+/// Marks the occupied bricks in which the transfer function hardly changes; their share of all.
+double find_smooth(const BrickGrid& bricks, const SmoothRule& rule, std::span<const std::uint8_t> occupied,
+                   std::vector<std::uint8_t>& smooth) {
+    smooth.assign(bricks.count(), 0);
+    if (rule.variation.empty() || bricks.count() == 0) {
+        return 0.0;
+    }
+    const auto scale = static_cast<float>(rule.scale);
+    const auto offset = static_cast<float>(rule.offset);
+    const auto last = static_cast<float>(rule.variation.size() - 1);
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < bricks.count(); ++i) {
+        const auto from = static_cast<std::size_t>(std::clamp(scale * bricks.min[i] + offset, 0.0F, last));
+        const auto to =
+            static_cast<std::size_t>(std::clamp(scale * bricks.max[i] + offset + 1.0F, 0.0F, last));
+        const bool is_smooth = rule.variation[to] - rule.variation[from] <= rule.tolerance;
+        smooth[i] = occupied[i] & static_cast<std::uint8_t>(is_smooth);
+        count += smooth[i];
+    }
+    return static_cast<double>(count) / static_cast<double>(bricks.count());
+}
+
+}  // namespace
+
 void SkipMap::update(const BrickGrid& bricks, std::span<const StoredRange> visible, const VoxelBox& crop,
-                     std::uint64_t key) {
+                     const SmoothRule& smooth, std::uint64_t key) {
     if (key == key_) {
         return;
     }
@@ -42,9 +93,27 @@ void SkipMap::update(const BrickGrid& bricks, std::span<const StoredRange> visib
     find_occupied(bricks, visible, crop, occupied_);
     occupancy_ = volume::occupancy(occupied_);
     signed_distance(dims_, occupied_, distance_, scratch_);
-    std::ranges::transform(distance_, occupied_.begin(), [](std::int8_t d) {
-        return static_cast<std::uint8_t>(std::abs(static_cast<int>(d)) + (d < 0 ? 128 : 0));
+    texels_.resize(occupied_.size());
+    std::ranges::transform(distance_, texels_.begin(), [](std::int8_t d) {
+        return static_cast<std::uint8_t>(std::abs(static_cast<int>(d)) + (d < 0 ? kind_occupied : 0));
     });
+    smooth_share_ = find_smooth(bricks, smooth, occupied_, kind_);
+    if (smooth_share_ == 0.0) {
+        return;
+    }
+    signed_distance(dims_, kind_, distance_, scratch_);
+    for (std::size_t i = 0; i < texels_.size(); ++i) {
+        if (kind_[i] != 0) {
+            texels_[i] = static_cast<std::uint8_t>(-distance_[i] + kind_smooth);
+        }
+        kind_[i] ^= occupied_[i];
+    }
+    signed_distance(dims_, kind_, distance_, scratch_);
+    for (std::size_t i = 0; i < texels_.size(); ++i) {
+        if (kind_[i] != 0) {
+            texels_[i] = static_cast<std::uint8_t>(-distance_[i] + kind_occupied);
+        }
+    }
 }
 
 const gl::Texture& SkipMap::texture(const gl::Functions& gl) {
@@ -54,7 +123,7 @@ const gl::Texture& SkipMap::texture(const gl::Functions& gl) {
         uploaded_ = 0;
     }
     if (uploaded_ != key_) {
-        texture_->upload(std::as_bytes(std::span(occupied_)));
+        texture_->upload(std::as_bytes(std::span(texels_)));
         uploaded_ = key_;
     }
     return *texture_;

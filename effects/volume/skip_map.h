@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "effects/volume/bricks.h"
+#include "effects/volume/classification.h"
 #include "effects/volume/source.h"
 #include "engine/gl/texture.h"
 
@@ -17,23 +18,44 @@ struct Bricks {
 [[nodiscard]] std::shared_ptr<Bricks> load_bricks(Assets& assets, const Source& source, int channel, int size,
                                                   int border);
 
+/// Where the transfer function hardly changes: a brick is smooth when `variation` grows by at most
+/// `tolerance` between its least and greatest stored number.
+struct SmoothRule {
+    std::vector<float>
+        variation;       ///< of colour and opacity, summed from the first entry; empty: no brick is smooth
+    double scale = 0.0;  ///< entry = scale * stored + offset
+    double offset = 0.0;
+    float tolerance = 0.0F;
+};
+/// Sums, over 4096 entries from `low` to `high` (stored), how much the picture can change when a value is
+/// taken for another: extinction times the longest way through the volume, and the largest change of a
+/// colour.
+[[nodiscard]] SmoothRule make_smooth_rule(const ExtinctionKnots& knots, double low, double high,
+                                          double way_mm, double tolerance);
+
 /// Which bricks show something under one transfer function and crop, as the march reads it: see
 /// glsl/volume/skip.glsl.
 class SkipMap {
   public:
     /// Finds it anew when `key` (of transfer function, crop and bricks) is another than the last. No OpenGL.
     void update(const BrickGrid& bricks, std::span<const StoredRange> visible, const VoxelBox& crop,
-                std::uint64_t key);
+                const SmoothRule& smooth, std::uint64_t key);
     /// Share of bricks that show something.
     [[nodiscard]] double occupancy() const { return occupancy_; }
-    /// The distances as a texture of unsigned bytes: magnitude, + 128 where occupied.
+    /// Share of bricks in which long slabs do.
+    [[nodiscard]] double smooth_share() const { return smooth_share_; }
+    /// A texture of unsigned bytes: 32 * kind (0 empty, 1 occupied, 2 smooth) + distance in bricks to the
+    /// nearest of another kind.
     [[nodiscard]] const gl::Texture& texture(const gl::Functions& gl);
 
   private:
     std::uint64_t key_ = 0;
     glm::ivec3 dims_{0};
     double occupancy_ = 1.0;
+    double smooth_share_ = 0.0;
     std::vector<std::uint8_t> occupied_;
+    std::vector<std::uint8_t> kind_;
+    std::vector<std::uint8_t> texels_;
     std::vector<std::int8_t> distance_;
     DistanceScratch scratch_;
     std::optional<gl::Texture> texture_;

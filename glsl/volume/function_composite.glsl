@@ -14,30 +14,44 @@ State begin() {
 }
 
 bool take_slab(inout State state, Slab slab) {
-#if SCHEME == 0
+#if SCHEME == MIDPOINT
     vec4 c = material(slab.centre);
     state.depth += c.a * slab.length;
     float transmittance = exp(-state.depth);
     state.colour += (state.transmittance - transmittance) * c.rgb;
     state.transmittance = transmittance;
-#elif SCHEME == 1
-    // Two Gauss points, fourth order (spec: accuracy F15).
-    const float g = 0.28867513459481287;
-    vec4 a = material(slab.centre - g * slab.extent);
-    vec4 b = material(slab.centre + g * slab.extent);
+#else
+    // Two Gauss points, fourth order (spec: accuracy F15). Their weights are scaled so that they add up to the slab's
+    // opacity, which they do only for thin slabs: otherwise an opaque surface would come out dark.
+    vec4 a = material(slab.centre - gauss_point * slab.extent);
+    vec4 b = material(slab.centre + gauss_point * slab.extent);
     float mean = 0.5 * (a.a + b.a);
     float slope = 0.8660254037844386 * (b.a - a.a);
-    // Optical depth from the slab's start to each point: h (mean (u + 1/2) + slope (u^2 - 1/4)), u = -+g.
-    const float bend = g * g - 0.25;
-    float before_a = slab.length * (mean * (0.5 - g) + slope * bend);
-    float before_b = slab.length * (mean * (0.5 + g) + slope * bend);
-    state.colour += 0.5 * slab.length *
-                    (a.a * exp(-(state.depth + before_a)) * a.rgb + b.a * exp(-(state.depth + before_b)) * b.rgb);
+    // Optical depth from the slab's start to each point: h (mean (u + 1/2) + slope (u^2 - 1/4)), u = -+gauss_point.
+    const float bend = gauss_point * gauss_point - 0.25;
+    float weight_a = a.a * exp(-slab.length * (mean * (0.5 - gauss_point) + slope * bend));
+    float weight_b = b.a * exp(-slab.length * (mean * (0.5 + gauss_point) + slope * bend));
     state.depth += slab.length * mean;
+    float transmittance = exp(-state.depth);
+    float share = weight_b / max(weight_a + weight_b, 1e-30);
+    state.colour += (state.transmittance - transmittance) * mix(a.rgb, b.rgb, share);
+    state.transmittance = transmittance;
 #endif
+#ifdef TERMINATE
     return state.depth > u_depth_limit;
+#else
+    return false;
+#endif
 }
 
+// Where a ray was left early, what lies behind is taken to look like what lies in front: without it, every opaque pixel
+// would be too dark by what was left out. Off by at most the transmittance that was left.
 vec4 finish(State state) {
-    return vec4(state.colour, 1.0 - exp(-state.depth));
+    float opacity = 1.0 - exp(-state.depth);
+#ifdef TERMINATE
+    if (state.depth > u_depth_limit) {
+        return vec4(state.colour / opacity, 1.0);
+    }
+#endif
+    return vec4(state.colour, opacity);
 }

@@ -2,16 +2,14 @@
 // skipping nor stopping ever moves a sample. The last slab covers what is left. What happens in a slab is the ray
 // function's: bool take_slab(inout State, Slab), true to stop.
 // Counters stay below 65,535 in total, where llvmpipe stops loops without a word: effects/volume/sampling.h sees to it.
-uniform float u_slab;       // [mm]
+uniform float u_slab;  // [mm]
 uniform int u_slab_limit;
 
-#ifdef SKIP
-#include "volume/skip.glsl"
-#endif
+const int smooth_slabs = 4;  // slabs that are one where the transfer function hardly changes
 
-Slab slab_at(Ray ray, float start, vec3 first, vec3 extent, int k, float slabs, float offset) {
-    // Slabs are found from their number, never by adding up: the same slab comes out the same however it was reached.
-    float part = min(slabs - float(k), 1.0);
+// Slabs are found from their number, never by adding up: the same slab comes out the same however it was reached.
+Slab slab_at(float start, vec3 first, vec3 extent, int k, float number, float slabs, float offset) {
+    float part = min(slabs - float(k), number);
     float middle = float(k) + (0.5 + offset) * part;
     return Slab(first + middle * extent, extent * part, u_slab * part, start + middle * u_slab);
 }
@@ -29,17 +27,29 @@ void march(Ray ray, vec2 interval, float offset, inout State state) {
     int k = 0;
     while (k < count) {
         int end = count;
+        bool is_smooth = false;
         // Leaping and sampling are loops of their own: in one loop every step would pay for both.
         while (k < count) {
-            Run run = run_from(leaper, k, count);
-            end = run.end;
-            if (run.occupied) {
+            // A slab belongs to the brick of its centre, whose range covers the whole slab: its border is that wide.
+            Run run = run_from(leaper, float(k) + 0.5);
+            end = min(k + 1 + int(min(run.length, float(count))), count);
+            is_smooth = run.kind == run_smooth;
+            if (run.kind != run_empty) {
                 break;
             }
-            k = run.end;
+            k = end;
         }
-        for (; k < end; ++k) {
-            if (take_slab(state, slab_at(ray, interval.x, first, extent, k, slabs, offset))) {
+        while (k < end) {
+#ifdef ADAPTIVE
+            // Long slabs lie on a lattice of their own, so that where a run begins does not move them.
+            bool is_long = is_smooth && (k & (smooth_slabs - 1)) == 0 && k + smooth_slabs <= end;
+            int number = is_long ? smooth_slabs : 1;
+#else
+            const int number = 1;
+#endif
+            bool stop = take_slab(state, slab_at(interval.x, first, extent, k, float(number), slabs, offset));
+            k += number;
+            if (stop) {
                 k = count;
                 break;
             }
@@ -47,7 +57,7 @@ void march(Ray ray, vec2 interval, float offset, inout State state) {
     }
 #else
     for (int k = 0; k < count; ++k) {
-        if (take_slab(state, slab_at(ray, interval.x, first, extent, k, slabs, offset))) {
+        if (take_slab(state, slab_at(interval.x, first, extent, k, 1.0, slabs, offset))) {
             break;
         }
     }

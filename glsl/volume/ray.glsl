@@ -12,17 +12,20 @@ struct Ray {
     vec3 direction;  // texture coordinates per mm
     float near;      // s at the near and far plane [mm]
     float far;
+    vec3 world;      // direction in the world, of length 1
     float scale;     // mm of s per mm of depth along the view's axis
 };
 
 Ray pixel_ray(vec2 pixel) {
     vec2 ndc = pixel * u_pixel - 1.0;
-    float length_mm = length(u_world_direction[0] + ndc.x * u_world_direction[1] + ndc.y * u_world_direction[2]);
+    vec3 world = u_world_direction[0] + ndc.x * u_world_direction[1] + ndc.y * u_world_direction[2];
+    float length_mm = length(world);
     Ray ray;
     ray.origin = u_point[0] + ndc.x * u_point[1] + ndc.y * u_point[2];
     ray.direction = (u_direction[0] + ndc.x * u_direction[1] + ndc.y * u_direction[2]) / length_mm;
     ray.near = u_near_far.x * length_mm;
     ray.far = u_near_far.y * length_mm;
+    ray.world = world / length_mm;
     ray.scale = length_mm;
     return ray;
 }

@@ -1,25 +1,70 @@
 // The whole of ray casting for one pixel, shared by the fragment and the compute path. What stands for each part is the
 // variant's: effects/volume/ray_cast_programs.h.
+#define MIDPOINT 0
+#define GAUSS 1
+#define PREINTEGRATED 2
+#define CELL 3
 #include "volume/ray.glsl"
 #include "volume/coordinates_cartesian.glsl"
 #include "volume/sample.glsl"
 #include "volume/classify.glsl"
 #include "volume/material.glsl"
 #include "volume/slab.glsl"
-#ifdef COMPOSITE
+#if defined(ISOSURFACE) || (defined(PROJECTION) && SCHEME == CELL)
+#include "volume/cell_cubic.glsl"
+#endif
+#if defined(COMPOSITE)
 #include "volume/function_composite.glsl"
+#elif defined(ISOSURFACE)
+#include "volume/function_isosurface.glsl"
 #else
 #include "volume/function_projection.glsl"
 #endif
+#ifdef SKIP
+#include "volume/skip.glsl"
+#endif
+#if SCHEME == CELL || defined(ISOSURFACE)
+#include "volume/march_cells.glsl"
+#else
 #include "volume/march.glsl"
+#endif
+#ifdef JITTER
+#include "volume/jitter.glsl"
+#endif
+#include "volume/picture.glsl"
+#ifdef LIMITS
+#include "volume/limits.glsl"
+#endif
+#ifdef CLIP
+#include "volume/clip.glsl"
+#endif
 
 vec4 cast_ray(vec2 pixel) {
     Ray ray = pixel_ray(pixel);
+#ifdef SURFACE
+    ray.far = min(ray.far, surface_along(ray, pixel));
+#endif
+    look_along(ray.world);
     State state = begin();
+#ifdef JITTER
+    float offset = jitter(ivec2(pixel));
+#else
+    const float offset = 0.0;
+#endif
     for (int i = 0; i < max_intervals; ++i) {
         vec2 interval = ray_interval(ray, i);
+#ifdef LIMITS
+        interval = limit_interval(ray, pixel, interval);
+#endif
+#ifdef CLIP
+        interval = clip_interval(ray, interval);
+#endif
         interval = vec2(max(interval.x, ray.near), min(interval.y, ray.far));
-        march(ray, interval, 0.0, state);
+        march(ray, interval, offset, state);
     }
+#ifdef BACKGROUND
+    return over_background(finish(state), pixel);
+#else
     return finish(state);
+#endif
 }

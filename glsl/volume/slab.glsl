@@ -5,3 +5,6 @@ struct Slab {
     float length;  // [mm]
     float s;       // of the centre, from the ray's origin [mm]
 };
+
+// Gauss points lie this share of a slab before and behind its centre: 1 / (2 sqrt 3).
+const float gauss_point = 0.28867513459481287;

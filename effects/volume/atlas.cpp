@@ -1,0 +1,42 @@
+#include "effects/volume/atlas.h"
+
+#include <algorithm>
+
+namespace viscera::volume {
+namespace {
+
+constexpr int fine_side = 2048;
+
+int divide_up(int n, int by) {
+    return (n - 1) / by + 1;
+}
+
+}  // namespace
+
+glm::ivec3 AtlasLayout::place_of(int slice) const {
+    const int row = slice / tiles.x;
+    return {(slice % tiles.x) * tile().x + border, (row % tiles.y) * tile().y + border, row / tiles.y};
+}
+
+std::optional<AtlasLayout> lay_out(const glm::ivec3& dims, int max_side, int max_layers) {
+    AtlasLayout layout{.dims = dims};
+    const glm::ivec2 tile = layout.tile();
+    const int largest = std::max(tile.x, tile.y);
+    if (largest > max_side) {
+        return std::nullopt;
+    }
+    for (int side = std::min(std::max(largest, fine_side), max_side);; side = std::min(2 * side, max_side)) {
+        layout.tiles = side / tile;
+        layout.tiles.x = std::min(layout.tiles.x, dims.z);
+        layout.tiles.y = std::min(layout.tiles.y, divide_up(dims.z, layout.tiles.x));
+        layout.layers = divide_up(dims.z, layout.tiles.x * layout.tiles.y);
+        if (layout.layers <= max_layers) {
+            return layout;
+        }
+        if (side == max_side) {
+            return std::nullopt;
+        }
+    }
+}
+
+}  // namespace viscera::volume

@@ -1,0 +1,132 @@
+#include "effects/volume/labels.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "engine/core/error.h"
+
+namespace viscera::volume {
+namespace {
+
+constexpr std::size_t most_segments = 4095;
+
+/// All looks by index: the others', then each segment's.
+std::vector<const SegmentLook*> looks(const LabelParams& params) {
+    std::vector<const SegmentLook*> all{&params.others};
+    for (const Segment& segment : params.segments) {
+        all.push_back(&segment.look);
+    }
+    return all;
+}
+
+}  // namespace
+
+void SegmentLook::visit(ParamVisitor& v) {
+    v.field({.name = "visible", .doc = "Whether anything of it is shown."}, visible);
+    v.field({.name = "colour",
+             .doc = "red, green, blue, linear; by default the transfer function's",
+             .min = 0.0,
+             .max = 1.0},
+            colour);
+    v.field({.name = "colour_weight",
+             .doc = "1: the colour takes the place of the transfer function's; less: it tints it.",
+             .min = 0.0,
+             .max = 1.0},
+            colour_weight);
+    v.field({.name = "opacity_factor", .doc = "Factor on the extinction.", .min = 0.0, .max = 1000.0},
+            opacity_factor);
+    v.field({.name = "points", .doc = "Knots of a transfer function of its own."}, points);
+}
+
+void Segment::visit(ParamVisitor& v) {
+    v.field({.name = "id", .doc = "Value of the label volume.", .required = true}, id);
+    look.visit(v);
+}
+
+void LabelParams::visit(ParamVisitor& v) {
+    v.field({.name = "file", .doc = "Volume of whole numbers, one for each segment."}, file);
+    v.field({.name = "host", .doc = "Name of a volume that the host gives, instead of a file."}, host);
+    v.field({.name = "segments", .doc = "What single labels look like."}, segments);
+    v.field({.name = "others", .doc = "What all labels that are not listed look like."}, others);
+}
+
+bool LabelParams::has_ramps() const {
+    return std::ranges::any_of(looks(*this), [](const SegmentLook* look) { return !look->points.empty(); });
+}
+
+void LabelParams::validate() const {
+    if (!file.empty() && !host.empty()) {
+        throw Error(ErrorCode::scene, "/labels", "has either a file or a host's volume");
+    }
+    if (segments.size() > most_segments) {
+        throw Error(ErrorCode::scene, "/labels/segments",
+                    "at most " + std::to_string(most_segments) + " segments");
+    }
+    std::map<int, std::size_t> seen;
+    for (std::size_t i = 0; i < segments.size(); ++i) {
+        if (!seen.try_emplace(segments[i].id, i).second) {
+            throw Error(ErrorCode::scene, "/labels/segments/" + std::to_string(i) + "/id", "is listed twice");
+        }
+    }
+}
+
+std::vector<std::uint16_t> dense_labels(const Volume& labels, const LabelParams& params,
+                                        std::size_t& broken) {
+    std::map<double, std::uint16_t> index_of;
+    for (std::size_t i = 0; i < params.segments.size(); ++i) {
+        index_of[params.segments[i].id] = static_cast<std::uint16_t>(i + 1);
+    }
+    std::vector<std::uint16_t> dense;
+    dense.reserve(labels.grid.voxel_count());
+    double last = 0.5;  // labels come in runs
+    std::uint16_t last_index = 0;
+    bool last_broken = false;
+    const glm::ivec3 n = labels.grid.dims;
+    for (int z = 0; z < n.z; ++z) {
+        for (int y = 0; y < n.y; ++y) {
+            for (int x = 0; x < n.x; ++x) {
+                const double label = labels.value_of(labels.stored({x, y, z}));
+                if (label != last) {
+                    last_broken = !(label == std::floor(label) && std::isfinite(label));
+                    const auto found = std::isnan(label) ? index_of.end() : index_of.find(label);
+                    last = label;
+                    last_index = found == index_of.end() ? std::uint16_t{0} : found->second;
+                }
+                dense.push_back(last_index);
+                broken += last_broken ? 1 : 0;
+            }
+        }
+    }
+    return dense;
+}
+
+std::vector<glm::vec4> look_table(const LabelParams& params) {
+    const std::vector<const SegmentLook*> all = looks(params);
+    std::vector<glm::vec4> table(2 * all.size());
+    int row = 0;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const SegmentLook& look = *all[i];
+        const double weight = look.colour ? look.colour_weight : 0.0;
+        table[i] = glm::dvec4(look.colour.value_or(glm::dvec3(0.0)), weight);
+        row += look.points.empty() ? 0 : 1;
+        table[all.size() + i] =
+            glm::dvec4(look.visible ? look.opacity_factor : 0.0, look.points.empty() ? 0.0 : row, 0.0, 0.0);
+    }
+    return table;
+}
+
+std::vector<TransferFunction> ramps(const LabelParams& params, const TransferFunction& function) {
+    std::vector<TransferFunction> result;
+    for (const SegmentLook* look : looks(params)) {
+        if (!look->points.empty()) {
+            std::size_t faults = 0;
+            result.push_back(normalised(
+                TransferFunction{.points = look->points, .reference_length_mm = function.reference_length_mm},
+                faults));
+        }
+    }
+    return result;
+}
+
+}  // namespace viscera::volume

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "engine/core/params.h"
+#include "engine/core/volume.h"
+
+namespace viscera::volume {
+
+/// Shadow and ambient occlusion from a coarse grid of the volume's extinction.
+struct LightVolumeParams {
+    double shadow = 0.0;
+    double ambient_occlusion = 0.0;
+    int resolution = 48;
+    double radius_mm = 20.0;
+
+    void visit(ParamVisitor& v);
+    [[nodiscard]] bool used() const { return shadow > 0.0 || ambient_occlusion > 0.0; }
+};
+
+/// Mean extinction over the cells of a coarse grid in the volume's box; x fastest.
+struct ExtinctionGrid {
+    glm::ivec3 dims{1};
+    glm::dmat4 texture_to_world{1.0};
+    std::vector<float> per_mm;
+
+    /// Linear between cell centres, constant beyond the outermost.
+    [[nodiscard]] double at(const glm::dvec3& texture) const;
+};
+
+/// `resolution`: cells along the longest side of the box; never more than there are voxels. Each cell
+/// averages at most 4 x 4 x 4 of its voxels, evenly chosen. `extinction`: of a value [1/mm]; not finite
+/// voxels count as 0.
+[[nodiscard]] ExtinctionGrid extinction_grid(const Volume& volume, int channel,
+                                             const glm::dmat4& texture_to_world, int resolution,
+                                             const std::function<double(double value)>& extinction);
+
+/// Share of light that reaches a place (texture coordinates) from the world direction `towards`, of length 1,
+/// from no farther than `reach_mm`: exp of minus the extinction summed in steps of one cell at most, by
+/// midpoints.
+[[nodiscard]] double transmittance(const ExtinctionGrid& grid, const glm::dvec3& texture,
+                                   const glm::dvec3& towards, double reach_mm);
+
+/// Where the light comes from: a direction towards it, or its place [mm] (w 1).
+[[nodiscard]] std::vector<glm::vec2> light_volume(const ExtinctionGrid& grid, const LightVolumeParams& params,
+                                                  const glm::dvec4& light);
+
+}  // namespace viscera::volume

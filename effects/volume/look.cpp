@@ -1,0 +1,312 @@
+#include "effects/volume/look.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/core/error.h"
+#include "engine/core/hash.h"
+
+namespace viscera::volume {
+namespace {
+
+constexpr int gradient_entries = 1024;
+constexpr int overlay_entries = 1024;
+
+SourceParams source_of(const AssetPath& file, const std::string& host) {
+    SourceParams params;
+    params.file = file;
+    params.host = host;
+    return params;
+}
+
+std::uint64_t key_of(const std::shared_ptr<const Source>& source) {
+    return source ? Hash().add(source->key).add(source->version()).value() : 0;
+}
+
+std::uint64_t key_of(const TransferFunction& function) {
+    Hash hash;
+    for (const TransferPoint& point : function.points) {
+        hash.add(point.value).add(point.colour).add(point.opacity);
+    }
+    for (const GradientPoint& point : function.gradient) {
+        hash.add(point.gradient).add(point.factor);
+    }
+    return hash.add(function.reference_length_mm).value();
+}
+
+/// Linear between knots, constant beyond them; the second knot of a step holds at the step.
+double gradient_factor(const std::vector<GradientPoint>& points, double gradient) {
+    const auto right = std::ranges::upper_bound(points, gradient, {}, &GradientPoint::gradient);
+    if (right == points.begin() || right == points.end()) {
+        return right == points.end() ? points.back().factor : right->factor;
+    }
+    const GradientPoint& left = *std::prev(right);
+    return std::lerp(left.factor, right->factor,
+                     (gradient - left.gradient) / (right->gradient - left.gradient));
+}
+
+template <class T>
+gl::Texture table(const gl::Functions& gl, std::span<const T> texels, int rows, PixelFormat format,
+                  std::string_view label) {
+    gl::Texture texture =
+        gl::Texture::make_2d(gl, static_cast<int>(texels.size()) / rows, rows, format, label);
+    texture.upload(std::as_bytes(texels));
+    return texture;
+}
+
+}  // namespace
+
+void LookParams::visit(ParamVisitor& v) {
+    v.field({.name = "shading", .doc = "Lights and shadow (composite)."}, shading);
+    v.field({.name = "labels", .doc = "Segments with looks of their own (composite)."}, labels);
+    v.field({.name = "overlay", .doc = "A second volume that gives the hue (composite)."}, overlay);
+    v.field({.name = "clip_planes", .doc = "At most 8 planes that cut the volume; they stay in the world."},
+            clip_planes);
+}
+
+void LookParams::validate() const {
+    shading.validate();
+    labels.validate();
+    overlay.validate();
+    validate_clips(clip_planes);
+}
+
+std::vector<Look::Variant> Look::variants(const LookParams& params, const TransferParams& transfer) {
+    const bool by_file = !transfer.file.empty();
+    std::vector<Variant> all;
+    for (const bool shaded : {false, true}) {
+        for (const bool by_gradient : {false, true}) {
+            const bool shaded_fits =
+                params.shading.enabled ? shaded == *params.shading.enabled : by_file || !shaded;
+            const bool gradient_fits = transfer.gradient.empty() ? by_file || !by_gradient : by_gradient;
+            if (shaded_fits && gradient_fits) {
+                all.push_back({shaded, by_gradient});
+            }
+        }
+    }
+    return all;
+}
+
+std::vector<std::string> Look::defines(const LookParams& params, const Variant& variant) {
+    std::vector<std::string> names;
+    if (variant.shaded) {
+        names = params.shading.defines();
+    }
+    if (variant.by_gradient) {
+        names.emplace_back("GRADIENT_OPACITY");
+    }
+    if (params.labels.used()) {
+        names.emplace_back("LABELS");
+        if (params.labels.has_ramps()) {
+            names.emplace_back("LABEL_RAMPS");
+        }
+    }
+    if (params.overlay.used()) {
+        names.emplace_back("OVERLAY");
+    }
+    if (params.shading.light_volume.used()) {
+        names.emplace_back("LIGHT_VOLUME");
+    }
+    return names;
+}
+
+std::string_view Look::load(const LookParams& params, Prepare& prepare) {
+    parameters_key_ = prepare.parameters_key();
+    labels_ = nullptr;
+    overlay_ = nullptr;
+    if (params.labels.used()) {
+        labels_ =
+            load_source(prepare.assets(), source_of(params.labels.file, params.labels.host), prepare.frame());
+        if (!labels_) {
+            return "the host gives no label volume of this name";
+        }
+    }
+    if (params.overlay.used()) {
+        overlay_ = load_source(prepare.assets(), source_of(params.overlay.file, params.overlay.host),
+                               prepare.frame());
+        if (!overlay_) {
+            return "the host gives no overlay of this name";
+        }
+    }
+    return {};
+}
+
+std::uint64_t Look::key() const {
+    return Hash().add(key_of(labels_)).add(key_of(overlay_)).value();
+}
+
+void Look::widen(const LookParams& params, const TransferFunction& function, const TexelMap& value_of_stored,
+                 const TexelRange& stored, int entries, std::vector<StoredRange>& visible) const {
+    if (!params.labels.used() || !params.labels.has_ramps()) {
+        return;
+    }
+    for (const TransferFunction& ramp : ramps(params.labels, function)) {
+        const std::vector<StoredRange> more = stored_ranges(ramp, value_of_stored, stored, entries);
+        visible.insert(visible.end(), more.begin(), more.end());
+    }
+    std::ranges::sort(visible, {}, &StoredRange::low);
+    std::vector<StoredRange> joined;
+    for (const StoredRange& range : visible) {
+        if (!joined.empty() && range.low <= joined.back().high) {
+            joined.back().high = std::max(joined.back().high, range.high);
+        } else {
+            joined.push_back(range);
+        }
+    }
+    visible = std::move(joined);
+}
+
+void Look::bind_labels(const LookParams& params, const LookScene& scene, const Pass& pass,
+                       const gl::Program& program) {
+    const Volume& labels = labels_->volume();
+    const glm::ivec3 n = labels.grid.dims;
+    const std::uint64_t voxels_key = Hash().add(key_of(labels_)).add(parameters_key_).value();
+    if (label_voxels_.key != voxels_key) {
+        std::size_t broken = 0;
+        const std::vector<std::uint16_t> dense = dense_labels(labels, params.labels, broken);
+        if (broken > 0) {
+            pass.log().fault("volume.labels", "labels are not whole numbers; they count as not listed",
+                             broken);
+        }
+        label_voxels_.texture.emplace(
+            gl::Texture::make_3d(pass.gl(), {n.x, n.y, n.z}, gl::r16ui_format, labels.source));
+        label_voxels_.texture->upload(std::as_bytes(std::span(dense)));
+        label_voxels_.key = voxels_key;
+    }
+    if (label_looks_.key != parameters_key_) {
+        const std::vector<glm::vec4> looks = look_table(params.labels);
+        label_looks_.texture = table<glm::vec4>(pass.gl(), looks, 2, PixelFormat::rgba32f, "looks of labels");
+        label_looks_.key = parameters_key_;
+    }
+    const std::uint64_t ramps_key =
+        Hash().add(parameters_key_).add(scene.source.version()).add(key_of(scene.function)).value();
+    if (params.labels.has_ramps() && label_ramps_.key != ramps_key) {
+        std::vector<TransferFunction> rows = ramps(params.labels, scene.function);
+        rows.insert(rows.begin(), scene.function);
+        std::vector<glm::vec4> texels;
+        for (const TransferFunction& row : rows) {
+            const ClassificationTable entries = tabulate(
+                extinction_knots(row, scene.value_of_texel, scene.range), scene.range, scene.entries);
+            texels.insert(texels.end(), entries.entries.begin(), entries.entries.end());
+        }
+        label_ramps_.texture = table<glm::vec4>(pass.gl(), texels, static_cast<int>(rows.size()),
+                                                PixelFormat::rgba32f, "ramps of labels");
+        label_ramps_.key = ramps_key;
+    }
+    // Labels follow the volume's placement: both lie in one unplaced world.
+    const glm::dmat4 to_index =
+        glm::inverse(labels.grid.texture_to_world()) * scene.source.volume().grid.texture_to_world();
+    glm::dmat4 to_voxels(1.0);
+    for (int a = 0; a < 3; ++a) {
+        to_voxels[a][a] = n[a];
+    }
+    program.set("u_labels_from_local", glm::mat4(to_voxels * to_index));
+    pass.bind(program, "u_labels", *label_voxels_.texture, gl::Filter::nearest);
+    pass.bind(program, "u_label_looks", *label_looks_.texture, gl::Filter::nearest);
+    if (params.labels.has_ramps()) {
+        pass.bind(program, "u_label_ramps", *label_ramps_.texture, gl::Filter::nearest);
+    }
+}
+
+void Look::bind_overlay(const LookParams& params, const LookScene& scene, const Pass& pass,
+                        const gl::Program& program) {
+    const Volume& overlay = overlay_->volume();
+    GpuVolume& gpu = *pass.assets().shared<GpuVolume>(Hash().add(overlay_->key).add("overlay").value(), [&] {
+        return std::make_shared<GpuVolume>(pass.gl(), *overlay_, 0, Storage::texture_3d);
+    });
+    gpu.update(*overlay_);
+    const std::uint64_t map_key = Hash().add(key_of(overlay_)).add(parameters_key_).value();
+    if (overlay_map_.key != map_key) {
+        const OverlayTable map = overlay_table(
+            overlay_map(params.overlay, overlay_->statistics.min, overlay_->statistics.max), overlay_entries);
+        overlay_map_.texture =
+            table<glm::vec4>(pass.gl(), map.entries, 1, PixelFormat::rgba32f, "colours of the overlay");
+        const double scale = overlay.slope * gpu.map().scale;
+        overlay_place_ = {map.place.x * scale,
+                          map.place.x * overlay.value_of(gpu.map().offset) + map.place.y};
+        overlay_map_.key = map_key;
+    }
+    program.set("u_overlay_from_local", glm::mat4(glm::inverse(overlay.grid.texture_to_world()) *
+                                                  scene.source.volume().grid.texture_to_world()));
+    program.set("u_overlay_place", glm::vec2(overlay_place_));
+    program.set("u_overlay_strength", static_cast<float>(params.overlay.strength));
+    pass.bind(program, "u_overlay", gpu.texture(), gl::Filter::linear);
+    pass.bind(program, "u_overlay_map", *overlay_map_.texture, gl::Filter::nearest);
+}
+
+void Look::bind_gradient(const LookScene& scene, const Pass& pass, const gl::Program& program) {
+    const std::vector<GradientPoint>& points = scene.function.gradient;
+    const double last = std::max(points.back().gradient, 1e-30);
+    const std::uint64_t key = key_of(scene.function);
+    if (gradient_factor_.key != key) {
+        std::vector<float> factors;
+        for (int i = 0; i < gradient_entries; ++i) {
+            factors.push_back(static_cast<float>(gradient_factor(points, last * i / (gradient_entries - 1))));
+        }
+        gradient_factor_.texture =
+            table<float>(pass.gl(), factors, 1, PixelFormat::r32f, "opacity over gradient");
+        gradient_factor_.key = key;
+    }
+    const double length = scene.function.reference_length_mm;
+    program.set("u_gradient_place",
+                glm::vec3(glm::dvec3(std::abs(scene.value_of_texel.scale) * (gradient_entries - 1) / last,
+                                     length, 1.0 / length)));
+    pass.bind(program, "u_gradient_factor", *gradient_factor_.texture, gl::Filter::nearest);
+}
+
+void Look::bind_light(const LookParams& params, const LookScene& scene, const Pass& pass,
+                      const gl::Program& program) {
+    const LightVolumeParams& how = params.shading.light_volume;
+    const glm::dvec4 light = params.shading.lights.empty()
+                                 ? glm::dvec4(0.0, 0.0, 1.0, 0.0)
+                                 : params.shading.lights.front().place(pass.frame().eye());
+    const std::uint64_t key = Hash()
+                                  .add(key_of(scene.function))
+                                  .add(scene.source.key)
+                                  .add(scene.source.version())
+                                  .add(scene.local_to_world)
+                                  .add(how.shadow)
+                                  .add(how.ambient_occlusion)
+                                  .add(how.resolution)
+                                  .add(how.radius_mm)
+                                  .add(how.shadow > 0.0 ? light : glm::dvec4(0.0))
+                                  .value();
+    if (light_.key != key) {
+        const ExtinctionGrid grid = extinction_grid(
+            scene.source.volume(), scene.channel, scene.local_to_world, how.resolution, [&](double value) {
+                return extinction(evaluate(scene.function, value).w, scene.function.reference_length_mm);
+            });
+        light_.texture.emplace(gl::Texture::make_3d(pass.gl(), {grid.dims.x, grid.dims.y, grid.dims.z},
+                                                    gl::texture_format(PixelFormat::rg32f), "light volume"));
+        const std::vector<glm::vec2> texels = light_volume(grid, how, light);
+        light_.texture->upload(std::as_bytes(std::span(texels)));
+        light_.key = key;
+    }
+    program.set("u_light_volume_from_local", glm::mat4(1.0F));
+    pass.bind(program, "u_light_volume", *light_.texture, gl::Filter::linear);
+}
+
+void Look::bind(const LookParams& params, const Variant& variant, const LookScene& scene, const Pass& pass,
+                const gl::Program& program) {
+    if (variant.shaded) {
+        params.shading.set(program, scene.function, pass.frame().eye(), scene.local_to_world,
+                           scene.value_of_texel.scale > 0.0);
+    }
+    if (variant.shaded || variant.by_gradient) {
+        program.set("u_metric", glm::mat3(glm::transpose(glm::inverse(glm::dmat3(scene.local_to_world)))));
+    }
+    if (variant.by_gradient) {
+        bind_gradient(scene, pass, program);
+    }
+    if (params.labels.used()) {
+        bind_labels(params, scene, pass, program);
+    }
+    if (params.overlay.used()) {
+        bind_overlay(params, scene, pass, program);
+    }
+    if (params.shading.light_volume.used()) {
+        bind_light(params, scene, pass, program);
+    }
+}
+
+}  // namespace viscera::volume

@@ -1,0 +1,206 @@
+#include "effects/volume/prefilter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <thread>
+#include <vector>
+
+#include "effects/volume/gpu_volume.h"
+#include "engine/core/hash.h"
+
+namespace viscera::volume {
+namespace {
+
+constexpr int reach = 16;  // a change fades by 0.268 per voxel
+
+/// Factors of the elimination for a line of n: 1 / (diagonal - the factor before).
+std::vector<double> elimination(int n) {
+    std::vector<double> factors(static_cast<std::size_t>(n));
+    double before = 0.0;
+    for (int i = 0; i < n; ++i) {
+        const double diagonal = 4.0 + (i == 0 ? 1.0 : 0.0) + (i == n - 1 ? 1.0 : 0.0);
+        before = 1.0 / (diagonal - before);
+        factors[static_cast<std::size_t>(i)] = before;
+    }
+    return factors;
+}
+
+/// Solves `width` lines that lie side by side: row i of `rows` holds element i of each.
+void solve(std::span<const double> factors, std::size_t width, double* rows) {
+    const std::size_t n = factors.size();
+    for (std::size_t x = 0; x < width; ++x) {
+        rows[x] *= 6.0 * factors[0];
+    }
+    for (std::size_t i = 1; i < n; ++i) {
+        double* row = rows + i * width;
+        const double* before = row - width;
+        for (std::size_t x = 0; x < width; ++x) {
+            row[x] = (6.0 * row[x] - before[x]) * factors[i];
+        }
+    }
+    for (std::size_t i = n - 1; i-- > 0;) {
+        double* row = rows + i * width;
+        const double* behind = row + width;
+        for (std::size_t x = 0; x < width; ++x) {
+            row[x] -= factors[i] * behind[x];
+        }
+    }
+}
+
+/// Calls work(begin, end) for parts of [0, count) on several threads.
+template <class Work>
+void in_parts(int count, int threads, const Work& work) {
+    const int wanted = threads > 0 ? threads : static_cast<int>(std::thread::hardware_concurrency());
+    const int parts = std::clamp(wanted, 1, count);
+    std::vector<std::jthread> others;
+    for (int part = 1; part < parts; ++part) {
+        others.emplace_back([&, part] {
+            work(static_cast<int>(static_cast<std::int64_t>(count) * part / parts),
+                 static_cast<int>(static_cast<std::int64_t>(count) * (part + 1) / parts));
+        });
+    }
+    work(0, count / parts);
+}
+
+/// One channel of a box in stored units.
+std::vector<float> stored_values(const Volume& volume, int channel, const VoxelBox& box, float empty) {
+    std::vector<float> result;
+    result.reserve(static_cast<std::size_t>(box.size.x) * static_cast<std::size_t>(box.size.y) *
+                   static_cast<std::size_t>(box.size.z));
+    for (int z = 0; z < box.size.z; ++z) {
+        for (int y = 0; y < box.size.y; ++y) {
+            for (int x = 0; x < box.size.x; ++x) {
+                const auto stored =
+                    static_cast<float>(volume.stored(box.first + glm::ivec3(x, y, z), channel));
+                result.push_back(std::isfinite(stored) ? stored : empty);
+            }
+        }
+    }
+    return result;
+}
+
+/// A box grown by some voxels to all sides, cut at the volume's faces.
+VoxelBox grown(const VoxelBox& box, int by, const glm::ivec3& dims) {
+    const glm::ivec3 first = glm::clamp(box.first - by, glm::ivec3(0), dims);
+    return {first, glm::clamp(box.first + box.size + by, glm::ivec3(0), dims) - first};
+}
+
+/// The voxels of `inner` out of those of `outer`, which holds it.
+std::vector<float> cut_out(const std::vector<float>& voxels, const VoxelBox& outer, const VoxelBox& inner) {
+    std::vector<float> result;
+    const glm::ivec3 first = inner.first - outer.first;
+    for (int z = 0; z < inner.size.z; ++z) {
+        for (int y = 0; y < inner.size.y; ++y) {
+            const auto row = voxels.begin() +
+                             (static_cast<std::ptrdiff_t>(first.z + z) * outer.size.y + first.y + y) *
+                                 static_cast<std::ptrdiff_t>(outer.size.x) +
+                             first.x;
+            result.insert(result.end(), row, row + inner.size.x);
+        }
+    }
+    return result;
+}
+
+/// Coefficients that follow the volume they are made from.
+struct Coefficients {
+    Source source;
+    std::unique_ptr<LiveVolume> live;
+    std::uint64_t version = 0;  ///< of the voxels
+};
+
+void follow(Coefficients& coefficients, const Source& voxels, int channel) {
+    const Volume& volume = voxels.volume();
+    const auto empty = static_cast<float>((voxels.statistics.min - volume.intercept) / volume.slope);
+    const glm::ivec3 dims = volume.grid.dims;
+    bool everything = true;
+    std::vector<VoxelBox> changed;
+    if (voxels.live != nullptr && coefficients.version != 0) {
+        changed = voxels.live->changes_since(coefficients.version, everything);
+    }
+    if (everything) {
+        std::vector<float> values = stored_values(volume, channel, {glm::ivec3(0), dims}, empty);
+        make_coefficients(dims, values);
+        Volume made{.grid = volume.grid,
+                    .type = ScalarType::f32,
+                    .channels = 1,
+                    .voxels = {},
+                    .slope = volume.slope,
+                    .intercept = volume.intercept,
+                    .unit = volume.unit,
+                    .narrowing_error = volume.narrowing_error,
+                    .source = volume.source};
+        const auto bytes = std::as_bytes(std::span(values));
+        made.voxels.assign(bytes.begin(), bytes.end());
+        if (coefficients.live == nullptr) {
+            coefficients.live = std::make_unique<LiveVolume>(std::move(made));
+        } else {
+            coefficients.live->replace(std::move(made));
+        }
+    }
+    for (const VoxelBox& box : changed) {
+        const VoxelBox reached = grown(box, reach, dims);
+        const VoxelBox needed = grown(box, 2 * reach, dims);
+        std::vector<float> values = stored_values(volume, channel, needed, empty);
+        make_coefficients(needed.size, values);
+        values = cut_out(values, needed, reached);
+        coefficients.live->update(reached, std::as_bytes(std::span(values)));
+    }
+    coefficients.version = voxels.version();
+    coefficients.source.live = coefficients.live.get();
+    coefficients.source.statistics = voxels.statistics;
+}
+
+}  // namespace
+
+void make_coefficients(const glm::ivec3& dims, std::span<float> voxels, int threads) {
+    const auto nx = static_cast<std::size_t>(dims.x);
+    const auto ny = static_cast<std::size_t>(dims.y);
+    const auto nz = static_cast<std::size_t>(dims.z);
+    const std::vector<double> along_x = elimination(dims.x);
+    const std::vector<double> along_y = elimination(dims.y);
+    const std::vector<double> along_z = elimination(dims.z);
+    in_parts(dims.z, threads, [&](int begin, int end) {
+        std::vector<double> plane(nx * ny);
+        for (int z = begin; z < end; ++z) {
+            float* slice = voxels.data() + static_cast<std::size_t>(z) * nx * ny;
+            std::copy(slice, slice + nx * ny, plane.begin());
+            for (std::size_t y = 0; y < ny; ++y) {
+                solve(along_x, 1, plane.data() + y * nx);
+            }
+            solve(along_y, nx, plane.data());
+            std::transform(plane.begin(), plane.end(), slice, [](double c) { return static_cast<float>(c); });
+        }
+    });
+    in_parts(dims.y, threads, [&](int begin, int end) {
+        std::vector<double> plane(nx * nz);
+        for (int y = begin; y < end; ++y) {
+            const auto row = [&](std::size_t z) {
+                return voxels.data() + (z * ny + static_cast<std::size_t>(y)) * nx;
+            };
+            for (std::size_t z = 0; z < nz; ++z) {
+                std::copy(row(z), row(z) + nx, plane.begin() + static_cast<std::ptrdiff_t>(z * nx));
+            }
+            solve(along_z, nx, plane.data());
+            for (std::size_t z = 0; z < nz; ++z) {
+                std::transform(plane.data() + z * nx, plane.data() + (z + 1) * nx, row(z),
+                               [](double c) { return static_cast<float>(c); });
+            }
+        }
+    });
+}
+
+std::shared_ptr<const Source> load_coefficients(Assets& assets, const Source& source, int channel) {
+    const std::uint64_t key = Hash().add("coefficients").add(source.key).add(channel).value();
+    const std::shared_ptr<Coefficients> coefficients = assets.shared<Coefficients>(key, [&] {
+        auto made = std::make_shared<Coefficients>();
+        made->source.key = key;
+        return made;
+    });
+    if (coefficients->version != source.version()) {
+        follow(*coefficients, source, channel);
+    }
+    return {coefficients, &coefficients->source};
+}
+
+}  // namespace viscera::volume

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/core/params.h"
+#include "engine/gl/sampler.h"
+
+namespace viscera::volume {
+
+/// How voxels become a field. linear, bspline and catmull_rom use the texture unit, whose weights have 8 bits
+/// on most GPUs; those of *_fp32 have full precision. bspline and bspline_fp32 are tricubic B-splines,
+/// catmull_rom and catmull_rom_fp32 Keys' tricubic with a = -1/2.
+enum class ReconstructionFilter {
+    nearest,
+    linear,
+    linear_fp32,
+    bspline,
+    bspline_fp32,
+    catmull_rom,
+    catmull_rom_fp32
+};
+[[nodiscard]] std::span<const std::string_view> choice_names(ReconstructionFilter filter);
+
+/// automatic: central for nearest and linear filters, analytic for cubic ones.
+enum class GradientKind { automatic, central, analytic };
+[[nodiscard]] std::span<const std::string_view> choice_names(GradientKind kind);
+
+/// How a volume is reconstructed between its voxels: glsl/volume/sample.glsl.
+struct ReconstructionParams {
+    ReconstructionFilter filter = ReconstructionFilter::linear;
+    bool prefilter = true;
+    GradientKind gradient = GradientKind::automatic;
+
+    void visit(ParamVisitor& v);
+
+    /// Whether the texture holds B-spline coefficients instead of voxels.
+    [[nodiscard]] bool uses_coefficients() const;
+    /// How the texture unit filters.
+    [[nodiscard]] gl::Filter texture_filter() const;
+    /// What a brick's range must include: the farthest voxel that counts lies less than this beyond the place
+    /// that is sampled, plus half a voxel [voxels].
+    [[nodiscard]] double support_voxels() const;
+    /// For find_occupied().
+    [[nodiscard]] float overshoot() const;
+    /// For programs that include volume/sample.glsl.
+    [[nodiscard]] std::vector<std::string> defines() const;
+};
+
+}  // namespace viscera::volume

@@ -1,0 +1,30 @@
+// Trilinear reconstruction with weights of full precision: eight voxels.
+
+// Value and derivative along x, y and z per voxel.
+vec4 linear_jet(vec3 place) {
+    vec3 p = place * vec3(volume_size()) - 0.5;
+    vec3 cell = floor(p);
+    vec3 a = p - cell;
+    ivec3 low = inside_volume(ivec3(cell));
+    ivec3 high = inside_volume(ivec3(cell) + 1);
+    // Along x for (y, z) = (low, low), (high, low), (low, high), (high, high).
+    vec4 start = vec4(texel(low), texel(ivec3(low.x, high.y, low.z)), texel(ivec3(low.xy, high.z)),
+                      texel(ivec3(low.x, high.yz)));
+    vec4 end = vec4(texel(ivec3(high.x, low.yz)), texel(ivec3(high.xy, low.z)),
+                    texel(ivec3(high.x, low.y, high.z)), texel(high));
+    vec4 step_x = end - start;
+    vec4 row = start + a.x * step_x;
+    vec2 step_y = row.yw - row.xz;
+    vec2 plane = row.xz + a.y * step_y;
+    vec2 slope_x = step_x.xz + a.y * (step_x.yw - step_x.xz);
+    return vec4(plane.x + a.z * (plane.y - plane.x), slope_x.x + a.z * (slope_x.y - slope_x.x),
+                step_y.x + a.z * (step_y.y - step_y.x), plane.y - plane.x);
+}
+
+float sample_volume(vec3 place) {
+    return linear_jet(place).x;
+}
+
+vec3 filter_gradient(vec3 place) {
+    return linear_jet(place).yzw * vec3(volume_size());
+}

@@ -1,0 +1,36 @@
+// Segments: each voxel of a second grid names one. Never filtered.
+uniform usampler3D u_labels;
+uniform mat4 u_labels_from_local;   // local -> voxels of the label grid
+uniform sampler2D u_label_looks;    // row 0: colour, its weight; row 1: factor on extinction, row of the ramp
+#ifdef LABEL_RAMPS
+uniform sampler2D u_label_ramps;    // as u_transfer, one row for each ramp; row 0 is the transfer function
+#endif
+
+// Index of the segment's look; 0: the default, also outside of the label grid.
+int label_at(vec3 local) {
+    ivec3 voxel = ivec3(floor((u_labels_from_local * vec4(local, 1.0)).xyz));
+    ivec3 size = textureSize(u_labels, 0);
+    bool inside = all(greaterThanEqual(voxel, ivec3(0))) && all(lessThan(voxel, size));
+    int found = int(texelFetch(u_labels, clamp(voxel, ivec3(0), size - 1), 0).r);
+    return inside ? found : 0;
+}
+
+vec4 classify_label(float value, int label) {
+    vec4 look = texelFetch(u_label_looks, ivec2(label, 0), 0);
+    vec4 how = texelFetch(u_label_looks, ivec2(label, 1), 0);
+#ifdef LABEL_RAMPS
+    int row = int(how.y);
+    float last = float(textureSize(u_label_ramps, 0).x - 1);
+    float place = clamp(value * u_transfer_place.x + u_transfer_place.y, 0.0, last);
+#ifdef TRANSFER_LINEAR
+    int entry = int(place);
+    vec4 c = mix(texelFetch(u_label_ramps, ivec2(entry, row), 0),
+                 texelFetch(u_label_ramps, ivec2(min(entry + 1, int(last)), row), 0), place - float(entry));
+#else
+    vec4 c = texelFetch(u_label_ramps, ivec2(int(place + 0.5), row), 0);
+#endif
+#else
+    vec4 c = classify(value);
+#endif
+    return vec4(mix(c.rgb, look.rgb, look.a), c.a * how.x);
+}

@@ -1,0 +1,19 @@
+// A second, coarser volume gives the hue; the brightness stays.
+uniform sampler3D u_overlay;
+uniform mat4 u_overlay_from_local;  // local -> texture coordinates of the overlay
+uniform vec2 u_overlay_place;       // texel -> place in the colour map: x * texel + y
+uniform float u_overlay_strength;
+uniform sampler2D u_overlay_map;    // colour and share of the strength, one row
+
+// Fusion in the HSV model: hue and saturation of the map, value of the colour.
+vec3 overlaid(vec3 colour, vec3 local) {
+    vec3 place = (u_overlay_from_local * vec4(local, 1.0)).xyz;
+    float share = textureLod(u_overlay, place, 0.0).r * u_overlay_place.x + u_overlay_place.y;
+    bool inside = all(greaterThanEqual(place, vec3(0.0))) && all(lessThanEqual(place, vec3(1.0)));
+    float last = float(textureSize(u_overlay_map, 0).x - 1);
+    vec4 hue = texelFetch(u_overlay_map, ivec2(int(clamp(share, 0.0, 1.0) * last + 0.5), 0), 0);
+    float brightness = max(max(colour.r, colour.g), colour.b);
+    // The colour of the map's hue and saturation whose largest component is the brightness.
+    vec3 fused = hue.rgb * (brightness / max(max(max(hue.r, hue.g), hue.b), 1e-6));
+    return mix(colour, fused, inside ? u_overlay_strength * hue.a : 0.0);
+}

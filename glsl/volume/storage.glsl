@@ -1,0 +1,61 @@
+// Where voxels are read: a 3-D texture, or slices tiled over the layers of an array (STORAGE_ATLAS), for what exceeds
+// the limit of 3-D textures: effects/volume/atlas.h.
+#ifdef STORAGE_ATLAS
+uniform sampler2DArray u_volume;
+uniform ivec3 u_volume_size;  // voxels
+uniform ivec2 u_atlas_tiles;  // slices beside and above each other on a layer
+
+ivec3 volume_size() {
+    return u_volume_size;
+}
+
+// First texel of a slice, behind its border, and its layer.
+ivec3 atlas_tile(int slice) {
+    int row = slice / u_atlas_tiles.x;
+    int layer = row / u_atlas_tiles.y;
+    ivec2 tile = ivec2(slice - row * u_atlas_tiles.x, row - layer * u_atlas_tiles.y);
+    return ivec3(tile * (u_volume_size.xy + 2) + 1, layer);
+}
+
+float texel(ivec3 voxel) {
+    ivec3 tile = atlas_tile(voxel.z);
+    return texelFetch(u_volume, ivec3(tile.xy + voxel.xy, tile.z), 0).r;
+}
+
+float atlas_slice(vec2 place, int slice) {
+    ivec3 tile = atlas_tile(clamp(slice, 0, u_volume_size.z - 1));
+    vec2 page = vec2(textureSize(u_volume, 0).xy);
+    return textureLod(u_volume, vec3((vec2(tile.xy) + place) / page, float(tile.z)), 0.0).r;
+}
+
+float linear_texel(vec3 place) {
+    vec3 size = vec3(u_volume_size);
+    vec3 p = place * size;
+    // The border around each slice takes what rounding moves beyond the outermost centres.
+    vec2 inside = clamp(p.xy, vec2(0.5), size.xy - 0.5);
+    float below = floor(p.z - 0.5);
+    float low = atlas_slice(inside, int(below));
+    float high = atlas_slice(inside, int(below) + 1);
+    return low + (p.z - 0.5 - below) * (high - low);
+}
+#else
+uniform sampler3D u_volume;
+
+ivec3 volume_size() {
+    return textureSize(u_volume, 0);
+}
+
+// One voxel, which must be inside.
+float texel(ivec3 voxel) {
+    return texelFetch(u_volume, voxel, 0).r;
+}
+
+// Trilinear by the texture unit; beyond the outermost centres their value goes on.
+float linear_texel(vec3 place) {
+    return textureLod(u_volume, place, 0.0).r;
+}
+#endif
+
+ivec3 inside_volume(ivec3 voxel) {
+    return clamp(voxel, ivec3(0), volume_size() - 1);
+}
