@@ -212,7 +212,7 @@ void Look::bind_overlay(const LookParams& params, const LookScene& scene, const 
                         const gl::Program& program) {
     const Volume& overlay = overlay_->volume();
     GpuVolume& gpu = *pass.assets().shared<GpuVolume>(Hash().add(overlay_->key).add("overlay").value(), [&] {
-        return std::make_shared<GpuVolume>(pass.gl(), *overlay_, 0, Storage::texture_3d);
+        return std::make_shared<GpuVolume>(pass.gl(), *overlay_, 0);
     });
     gpu.update(*overlay_);
     const std::uint64_t map_key = Hash().add(key_of(overlay_)).add(parameters_key_).value();
