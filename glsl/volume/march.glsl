@@ -27,39 +27,32 @@ void march(Ray ray, vec2 interval, float offset, inout State state) {
     int k = 0;
     while (k < count) {
         int end = count;
-        bool is_smooth = false;
-        // Leaping and sampling are loops of their own: in one loop every step would pay for both.
-        while (k < count) {
+        uint kind = run_empty;
+        // Leaping and sampling are loops of their own: in one loop every step would pay for both. Both end by their
+        // condition alone, since each `break` is one more mask to keep on software renderers.
+        while (kind == run_empty && k < count) {
             // A slab belongs to the brick of its centre, whose range covers the whole slab: its border is that wide.
             Run run = run_from(leaper, float(k) + 0.5);
             end = min(k + 1 + int(min(run.length, float(count))), count);
-            is_smooth = run.kind == run_smooth;
-            if (run.kind != run_empty) {
-                break;
-            }
-            k = end;
+            kind = run.kind;
+            k = kind == run_empty ? end : k;
         }
         while (k < end) {
 #ifdef ADAPTIVE
             // Long slabs lie on a lattice of their own, so that where a run begins does not move them.
-            bool is_long = is_smooth && (k & (smooth_slabs - 1)) == 0 && k + smooth_slabs <= end;
+            bool is_long = kind == run_smooth && (k & (smooth_slabs - 1)) == 0 && k + smooth_slabs <= end;
             int number = is_long ? smooth_slabs : 1;
 #else
             const int number = 1;
 #endif
             bool stop = take_slab(state, slab_at(interval.x, first, extent, k, float(number), slabs, offset));
-            k += number;
-            if (stop) {
-                k = count;
-                break;
-            }
+            k = stop ? count : k + number;
         }
     }
 #else
     for (int k = 0; k < count; ++k) {
-        if (take_slab(state, slab_at(interval.x, first, extent, k, 1.0, slabs, offset))) {
-            break;
-        }
+        bool stop = take_slab(state, slab_at(interval.x, first, extent, k, 1.0, slabs, offset));
+        k = stop ? count : k;
     }
 #endif
 }
