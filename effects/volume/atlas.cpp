@@ -1,10 +1,12 @@
 #include "effects/volume/atlas.h"
 
 #include <algorithm>
+#include <array>
 
 namespace viscera::volume {
 namespace {
 
+constexpr std::array<std::string_view, 3> storage_names{"automatic", "texture_3d", "atlas"};
 constexpr int fine_side = 2048;
 
 int divide_up(int n, int by) {
@@ -12,6 +14,10 @@ int divide_up(int n, int by) {
 }
 
 }  // namespace
+
+std::span<const std::string_view> choice_names(Storage) {
+    return storage_names;
+}
 
 glm::ivec3 AtlasLayout::place_of(int slice) const {
     const int row = slice / tiles.x;

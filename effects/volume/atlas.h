@@ -1,10 +1,16 @@
 #pragma once
 
 #include <optional>
+#include <span>
+#include <string_view>
 
 #include <glm/glm.hpp>
 
 namespace viscera::volume {
+
+/// automatic: a 3-D texture unless the volume exceeds what the device allows.
+enum class Storage { automatic, texture_3d, atlas };
+[[nodiscard]] std::span<const std::string_view> choice_names(Storage storage);
 
 /// The slices of a volume side by side on the layers of an array of 2-D textures, each with a border of one
 /// texel that repeats its edge, so that filtering in the slice takes nothing from its neighbours.

@@ -1,7 +1,6 @@
 #include "effects/volume/gpu_volume.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -66,8 +65,6 @@ gl::Extent extent(const glm::ivec3& v) {
 gl::TextureFormat format_of(ScalarType type) {
     return type == ScalarType::f32 ? gl::texture_format(PixelFormat::r32f) : gl::r16_format;
 }
-
-constexpr std::array<std::string_view, 3> storage_names{"automatic", "texture_3d", "atlas"};
 
 bool fits_3d(const glm::ivec3& dims, const TextureLimits& limits) {
     return std::max({dims.x, dims.y, dims.z}) <= limits.side_3d;
@@ -157,10 +154,6 @@ std::vector<std::byte> texels(const Volume& volume, int channel, const VoxelBox&
     return converted<float, float>(volume, channel, box, [fill = static_cast<float>(empty)](float stored) {
         return std::isfinite(stored) ? stored : fill;
     });
-}
-
-std::span<const std::string_view> choice_names(Storage) {
-    return storage_names;
 }
 
 TextureLimits TextureLimits::query(const gl::Functions& gl) {

@@ -8,9 +8,6 @@
 
 namespace viscera::volume {
 
-enum class Storage { automatic, texture_3d, atlas };
-[[nodiscard]] std::span<const std::string_view> choice_names(Storage storage);
-
 /// How a stored number comes back from a texture fetch: the `value` of this map is the stored number.
 /// Integers are uploaded as 16 bits, 8-bit ones as 257 n: filtering 8-bit textures is quantised to 8 bits on
 /// some devices.
@@ -40,7 +37,7 @@ class GpuVolume {
   public:
     /// Throws Error(limit) as choose_storage(), or when memory is short.
     GpuVolume(const gl::Functions& gl, const Source& source, int channel,
-              Storage storage = Storage::automatic);
+              Storage storage = Storage::texture_3d);
 
     /// Uploads what has changed since the last call.
     void update(const Source& source);

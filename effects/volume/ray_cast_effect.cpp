@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "effects/volume/crop.h"
+#include "effects/volume/prefilter.h"
 #include "effects/volume/ray_frame.h"
 #include "engine/core/error.h"
 #include "engine/core/hash.h"
@@ -47,6 +48,10 @@ void RayCastEffect::validate() const {
         throw Error(ErrorCode::scene, "/volume", "needs either a file or a host's volume");
     }
     params_.transfer_function.validate();
+    if (params_.sampling.scheme == Scheme::preintegrated && params_.look.labels.used()) {
+        throw Error(ErrorCode::scene, "/sampling/scheme",
+                    "preintegrated takes one transfer function for the whole slab; segments have their own");
+    }
     params_.look.validate();
 }
 
@@ -100,6 +105,8 @@ std::span<const ProgramDesc> RayCastEffect::programs() const {
                 }
             }
             add_defines(params_.sampling, program.defines);
+            const std::vector<std::string> filter = params_.sampling.reconstruction.defines();
+            program.defines.insert(program.defines.end(), filter.begin(), filter.end());
             if (params_.transfer_function.interpolate) {
                 program.defines.emplace_back("TRANSFER_LINEAR");
             }
@@ -145,6 +152,9 @@ std::span<const ProgramDesc> RayCastEffect::programs() const {
     };
     again(&Variant::surface, "SURFACE");
     again(&Variant::background, "BACKGROUND");
+    if (params_.volume.storage != Storage::texture_3d) {
+        again(&Variant::atlas, "STORAGE_ATLAS");
+    }
     again(&Variant::compute, "");
     return programs_;
 }
@@ -187,6 +197,9 @@ void RayCastEffect::make_table(const gl::Functions& gl, const TexelMap& stored_o
     table_.emplace(gl::Texture::make_2d(gl, entries, 1, PixelFormat::rgba32f, "transfer function"));
     table_->upload(std::as_bytes(std::span(table.entries)));
     table_place_ = table.place;
+    if (params_.sampling.scheme == Scheme::preintegrated && !projects()) {
+        slabs_.emplace(gl, tabulate_slabs(knots, range));
+    }
 }
 
 /// Stored numbers that can change the picture; empty where every number can.
@@ -256,13 +269,17 @@ bool RayCastEffect::find_bricks(Prepare& prepare) {
     if (ranges.empty() && projects()) {
         return true;
     }
-    // A cell or slab belongs to the brick of its middle; linear reconstruction needs half a voxel more.
-    const int border = static_cast<int>(std::ceil(reach(params_.sampling, lattice_) + 0.5));
-    bricks_ = load_bricks(prepare.assets(), *source_, params_.volume.channel, brick_size, border);
+    // A cell or slab belongs to the brick of its middle; reconstruction needs voxels beyond.
+    const ReconstructionParams& filter = params_.sampling.reconstruction;
+    const int border =
+        static_cast<int>(std::ceil(reach(params_.sampling, lattice_) + filter.support_voxels()));
+    bricks_ = load_bricks(prepare.assets(), *sampled_, sampled_channel_, brick_size, border);
     const std::uint64_t key = Hash().add(parameters_key_).add(bricks_.get()).add(bricks_->version).value();
     // The rule knows of the transfer function alone.
-    const bool adaptive = params_.sampling.tolerance > 0.0 && !projects() && !params_.look.used(variant_.look);
-    skip_map_.update(bricks_->grid, ranges, crop_, adaptive ? smooth_rule() : SmoothRule{}, key);
+    const bool adaptive =
+        params_.sampling.tolerance > 0.0 && !projects() && !params_.look.used(variant_.look);
+    skip_map_.update(bricks_->grid, ranges, crop_, adaptive ? smooth_rule() : SmoothRule{}, key,
+                     filter.overshoot() + overshoot(params_.sampling));
     if (skip_map_.occupancy() == 0.0) {
         return false;
     }
@@ -277,11 +294,14 @@ bool RayCastEffect::find_bricks(Prepare& prepare) {
 
 Work RayCastEffect::prepare(Prepare& prepare) {
     const bool changed = parameters_key_ != prepare.parameters_key();
-    parameters_key_ = prepare.parameters_key();
     source_ = load_source(prepare.assets(), params_.volume, prepare.frame());
     if (!source_) {
         return Work::idle("the host gives no volume of this name");
     }
+    parameters_key_ = prepare.parameters_key();
+    const bool coefficients = params_.sampling.reconstruction.uses_coefficients();
+    sampled_channel_ = coefficients ? 0 : params_.volume.channel;
+    sampled_ = coefficients ? load_coefficients(prepare.assets(), *source_, params_.volume.channel) : source_;
     const Volume& volume = source_->volume();
     if (changed) {
         find_function(prepare);
@@ -350,9 +370,12 @@ void RayCastEffect::bind_blue_noise(const Pass& pass, const gl::Program& program
 
 void RayCastEffect::draw(const Pass& pass) {
     GpuVolume& gpu = *pass.assets().shared<GpuVolume>(
-        Hash().add(source_->key).add(params_.volume.channel).value(),
-        [&] { return std::make_shared<GpuVolume>(pass.gl(), *source_, params_.volume.channel); });
-    gpu.update(*source_);
+        Hash().add(sampled_->key).add(sampled_channel_).add(params_.volume.storage).value(), [&] {
+            return std::make_shared<GpuVolume>(pass.gl(), *sampled_, sampled_channel_,
+                                               params_.volume.storage);
+        });
+    gpu.update(*sampled_);
+    variant_.atlas = gpu.is_atlas();
     const Volume& volume = source_->volume();
     const TexelMap& map = gpu.map();
     const auto texel = [&](double value) { return map.texel_of((value - volume.intercept) / volume.slope); };
@@ -384,6 +407,9 @@ void RayCastEffect::draw(const Pass& pass) {
                      params_.sampling.termination, program);
     }
     program.set("u_transfer_place", glm::vec2(table_place_));
+    if (slabs_) {
+        slabs_->bind(pass, program);
+    }
     program.set("u_depth_limit", params_.sampling.termination > 0.0
                                      ? static_cast<float>(-std::log(params_.sampling.termination))
                                      : 3e38F);
@@ -396,7 +422,8 @@ void RayCastEffect::draw(const Pass& pass) {
     if (params_.threshold) {
         program.set("u_threshold", static_cast<float>(texel(*params_.threshold)));
     }
-    pass.bind(program, "u_volume", gpu.texture());
+    gpu.set(program);
+    pass.bind(program, "u_volume", gpu.texture(), params_.sampling.reconstruction.texture_filter());
     pass.bind(program, "u_transfer", *table_, gl::Filter::nearest);
     if (!params_.look.clip_planes.empty()) {
         set_clips(program, params_.look.clip_planes, texture_to_world_);

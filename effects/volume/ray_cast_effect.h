@@ -7,6 +7,7 @@
 #include "effects/volume/gpu_volume.h"
 #include "effects/volume/ray_cast_params.h"
 #include "effects/volume/skip_map.h"
+#include "effects/volume/slab_texture.h"
 #include "engine/runtime/effect.h"
 
 namespace viscera::volume {
@@ -31,6 +32,7 @@ class RayCastEffect final : public Effect {
         Look::Variant look;
         bool surface = false;     ///< rays end at opaque surfaces
         bool background = false;  ///< the picture goes over another
+        bool atlas = false;       ///< the volume is stored as slices
         bool compute = false;
         bool operator==(const Variant&) const = default;
     };
@@ -51,6 +53,8 @@ class RayCastEffect final : public Effect {
     Variant variant_;                        ///< of this frame
     std::uint64_t parameters_key_ = 0;
     std::shared_ptr<const Source> source_;
+    std::shared_ptr<const Source> sampled_;  ///< what the texture holds: the source or its coefficients
+    int sampled_channel_ = 0;
     TransferFunction function_;
     std::shared_ptr<Bricks> bricks_;
     SkipMap skip_map_;
@@ -61,6 +65,7 @@ class RayCastEffect final : public Effect {
     Lattice lattice_;
     Look look_;
     std::optional<gl::Texture> blue_noise_;
+    std::optional<SlabTexture> slabs_;  ///< preintegrated only
     std::optional<gl::Texture> table_;
     std::uint64_t table_key_ = 0;
     glm::dvec2 table_place_{0.0};

@@ -20,7 +20,6 @@ std::span<const std::string_view> choice_names(Jitter) {
     return jitter_names;
 }
 
-
 void SamplingParams::visit(ParamVisitor& v) {
     v.field({.name = "step",
              .doc = "Mean distance of samples in units of the smallest voxel spacing.",
@@ -47,14 +46,16 @@ void SamplingParams::visit(ParamVisitor& v) {
             tolerance);
     v.field({.name = "skip", .doc = "Leaps over bricks that cannot show anything; the picture is the same."},
             skip);
-    v.field({.name = "limits",
-             .doc = "Where rays begin and end: at the box's planes; two_pass: as volume.entry and volume.exit "
-                    "have drawn it; mesh: the same, within the box."},
-            limits);
+    v.field(
+        {.name = "limits",
+         .doc = "Where rays begin and end: at the box's planes; two_pass: as volume.entry and volume.exit "
+                "have drawn it; mesh: the same, within the box."},
+        limits);
     v.field(
         {.name = "jitter", .doc = "Moves each ray's samples by a part of a slab, the same in every frame."},
         jitter);
     v.field({.name = "seed", .doc = "Another jitter.", .min = 0, .max = 1e9}, seed);
+    reconstruction.visit(v);
 }
 
 Lattice make_lattice(const SamplingParams& params, const glm::dmat4& texture_to_world, const glm::ivec3& dims,
@@ -99,6 +100,12 @@ double reach(const SamplingParams& params, const Lattice& lattice) {
             return 0.5;
     }
     return 0.0;
+}
+
+float overshoot(const SamplingParams& params) {
+    // A line through values at +-1 / (2 sqrt 3) goes on to +-1/2: (sqrt 3 - 1) / 2 of their difference on
+    // each side.
+    return params.scheme == Scheme::preintegrated ? 0.3661F : 0.0F;
 }
 
 void add_defines(const SamplingParams& params, std::vector<std::string>& defines) {

@@ -7,8 +7,9 @@
 
 #include <glm/glm.hpp>
 
-#include "engine/core/log.h"
 #include "effects/volume/limits.h"
+#include "effects/volume/reconstruction.h"
+#include "engine/core/log.h"
 #include "engine/core/params.h"
 
 namespace viscera::volume {
@@ -33,6 +34,7 @@ struct SamplingParams {
     Limits limits = Limits::analytic;
     Jitter jitter = Jitter::none;
     int seed = 0;
+    ReconstructionParams reconstruction;
 
     void visit(ParamVisitor& v);
 };
@@ -56,6 +58,9 @@ inline constexpr int most_slabs = 30000;
 
 /// How far beyond its own brick a slab's samples can lie [voxels], without the filter's support.
 [[nodiscard]] double reach(const SamplingParams& params, const Lattice& lattice);
+
+/// How far a scheme goes beyond the values that it samples, as a share of their range.
+[[nodiscard]] float overshoot(const SamplingParams& params);
 
 /// Defines of the shader for scheme, jitter, termination and long slabs.
 void add_defines(const SamplingParams& params, std::vector<std::string>& defines);

@@ -60,8 +60,8 @@ SmoothRule make_smooth_rule(const ExtinctionKnots& knots, double low, double hig
 namespace {
 
 /// Marks the occupied bricks in which the transfer function hardly changes; their share of all.
-double find_smooth(const BrickGrid& bricks, const SmoothRule& rule, std::span<const std::uint8_t> occupied,
-                   std::vector<std::uint8_t>& smooth) {
+double find_smooth(const BrickGrid& bricks, const SmoothRule& rule, float overshoot,
+                   std::span<const std::uint8_t> occupied, std::vector<std::uint8_t>& smooth) {
     smooth.assign(bricks.count(), 0);
     if (rule.variation.empty() || bricks.count() == 0) {
         return 0.0;
@@ -71,9 +71,11 @@ double find_smooth(const BrickGrid& bricks, const SmoothRule& rule, std::span<co
     const auto last = static_cast<float>(rule.variation.size() - 1);
     std::size_t count = 0;
     for (std::size_t i = 0; i < bricks.count(); ++i) {
-        const auto from = static_cast<std::size_t>(std::clamp(scale * bricks.min[i] + offset, 0.0F, last));
-        const auto to =
-            static_cast<std::size_t>(std::clamp(scale * bricks.max[i] + offset + 1.0F, 0.0F, last));
+        const float beyond = overshoot * (bricks.max[i] - bricks.min[i]);
+        const auto from =
+            static_cast<std::size_t>(std::clamp(scale * (bricks.min[i] - beyond) + offset, 0.0F, last));
+        const auto to = static_cast<std::size_t>(
+            std::clamp(scale * (bricks.max[i] + beyond) + offset + 1.0F, 0.0F, last));
         const bool is_smooth = rule.variation[to] - rule.variation[from] <= rule.tolerance;
         smooth[i] = occupied[i] & static_cast<std::uint8_t>(is_smooth);
         count += smooth[i];
@@ -84,20 +86,20 @@ double find_smooth(const BrickGrid& bricks, const SmoothRule& rule, std::span<co
 }  // namespace
 
 void SkipMap::update(const BrickGrid& bricks, std::span<const StoredRange> visible, const VoxelBox& crop,
-                     const SmoothRule& smooth, std::uint64_t key) {
+                     const SmoothRule& smooth, std::uint64_t key, float overshoot) {
     if (key == key_) {
         return;
     }
     key_ = key;
     dims_ = bricks.dims;
-    find_occupied(bricks, visible, crop, occupied_);
+    find_occupied(bricks, visible, crop, occupied_, overshoot);
     occupancy_ = volume::occupancy(occupied_);
     signed_distance(dims_, occupied_, distance_, scratch_);
     texels_.resize(occupied_.size());
     std::ranges::transform(distance_, texels_.begin(), [](std::int8_t d) {
         return static_cast<std::uint8_t>(std::abs(static_cast<int>(d)) + (d < 0 ? kind_occupied : 0));
     });
-    smooth_share_ = find_smooth(bricks, smooth, occupied_, kind_);
+    smooth_share_ = find_smooth(bricks, smooth, overshoot, occupied_, kind_);
     if (smooth_share_ == 0.0) {
         return;
     }

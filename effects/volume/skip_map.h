@@ -38,8 +38,9 @@ struct SmoothRule {
 class SkipMap {
   public:
     /// Finds it anew when `key` (of transfer function, crop and bricks) is another than the last. No OpenGL.
+    /// `overshoot`: how far the filter can leave a brick's range, as find_occupied() has it.
     void update(const BrickGrid& bricks, std::span<const StoredRange> visible, const VoxelBox& crop,
-                const SmoothRule& smooth, std::uint64_t key);
+                const SmoothRule& smooth, std::uint64_t key, float overshoot = 0.0F);
     /// Share of bricks that show something.
     [[nodiscard]] double occupancy() const { return occupancy_; }
     /// Share of bricks in which long slabs do.

@@ -18,6 +18,11 @@ void SourceParams::visit(ParamVisitor& v) {
              .max = 64},
             reduce);
     v.field({.name = "channel", .doc = "Channel of a volume that has several.", .min = 0, .max = 3}, channel);
+    v.field(
+        {.name = "storage",
+         .doc = "A 3-D texture, or slices side by side in 2-D textures (atlas), which hold longer volumes; "
+                "automatic: a 3-D texture while it fits."},
+        storage);
     v.field({.name = "placement", .doc = "Where the volume is put."}, placement);
 }
 

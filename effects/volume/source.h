@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "effects/volume/atlas.h"
 #include "engine/core/params.h"
 #include "engine/core/placement.h"
 #include "engine/core/volume.h"
@@ -18,6 +19,7 @@ struct SourceParams {
     std::string host;  ///< name in Frame::volumes instead of a file
     int reduce = 1;
     int channel = 0;
+    Storage storage = Storage::automatic;
     PlacementParams placement;
 
     void visit(ParamVisitor& v);
