@@ -23,19 +23,13 @@ void look_along(vec3 direction) {
     view_direction = direction;
 }
 
-vec4 material(vec3 local) {
-    vec3 place = to_sample(local);
-    float value = sample_volume(place);
-#ifdef LABELS
-    vec4 c = classify_label(value, label_at(local));
-#else
-    vec4 c = classify(value);
-#endif
+// Colour and extinction as they come to the eye from a place.
+vec4 appearance(vec4 c, vec3 local) {
 #ifdef OVERLAY
     c.rgb = overlaid(c.rgb, local);
 #endif
 #if defined(GRADIENT_OPACITY) || defined(SHADING)
-    vec3 gradient = metric(sample_gradient(place), local);
+    vec3 gradient = metric(sample_gradient(to_sample(local)), local);
 #endif
 #ifdef GRADIENT_OPACITY
     c.a = with_gradient_opacity(c.a, length(gradient));
@@ -51,4 +45,13 @@ vec4 material(vec3 local) {
     c.rgb *= min(arrives.x, arrives.y);
 #endif
     return c;
+}
+
+vec4 material(vec3 local) {
+    float value = sample_volume(to_sample(local));
+#ifdef LABELS
+    return appearance(classify_label(value, label_at(local)), local);
+#else
+    return appearance(classify(value), local);
+#endif
 }

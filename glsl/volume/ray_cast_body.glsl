@@ -9,6 +9,9 @@
 #include "volume/sample.glsl"
 #include "volume/classify.glsl"
 #include "volume/material.glsl"
+#if SCHEME == PREINTEGRATED && defined(COMPOSITE)
+#include "volume/slab_table.glsl"
+#endif
 #include "volume/slab.glsl"
 #if defined(ISOSURFACE) || (defined(PROJECTION) && SCHEME == CELL)
 #include "volume/cell_cubic.glsl"
