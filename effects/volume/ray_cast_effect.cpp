@@ -395,6 +395,7 @@ void RayCastEffect::draw(const Pass& pass) {
     program.set("u_near_far", frame.near_far);
     program.set("u_box_min", glm::vec3(box_min_));
     program.set("u_box_max", glm::vec3(box_max_));
+    program.set("u_metric", glm::mat3(glm::transpose(glm::inverse(glm::dmat3(texture_to_world_)))));
     program.set("u_slab", static_cast<float>(lattice_.slab_mm));
     program.set("u_slab_limit", lattice_.slab_limit);
     program.set("u_voxels", glm::vec3(volume.grid.dims));
