@@ -26,16 +26,22 @@ void march(Ray ray, vec2 interval, float offset, inout State state) {
     Leaper leaper = make_leaper(first, extent);
     int k = 0;
     while (k < count) {
-        int end = count;
+        // Leaping and sampling are loops of their own: in one loop every step would pay for both. Leaping finds all of the
+        // next stretch in which slabs are sampled, from its first brick to its last, since pixels that are computed side by
+        // side wait for each other at the end of each loop. Loops end by their condition alone: each `break` is one more
+        // mask to keep on software renderers.
+        int end = k;
         uint kind = run_empty;
-        // Leaping and sampling are loops of their own: in one loop every step would pay for both. Both end by their
-        // condition alone, since each `break` is one more mask to keep on software renderers.
-        while (kind == run_empty && k < count) {
+        bool leaping = true;
+        while (leaping) {
             // A slab belongs to the brick of its centre, whose range covers the whole slab: its border is that wide.
-            Run run = run_from(leaper, float(k) + 0.5);
-            end = min(k + 1 + int(min(run.length, float(count))), count);
-            kind = run.kind;
-            k = kind == run_empty ? end : k;
+            Run run = run_from(leaper, float(end) + 0.5);
+            bool goes_on = run.kind == kind;
+            bool begins = kind == run_empty;
+            end = goes_on || begins ? min(end + 1 + int(min(run.length, float(count))), count) : end;
+            k = goes_on && begins ? end : k;
+            kind = begins ? run.kind : kind;
+            leaping = (goes_on || begins) && end < count;
         }
         while (k < end) {
 #ifdef ADAPTIVE
