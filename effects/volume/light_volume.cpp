@@ -124,10 +124,13 @@ double transmittance(const ExtinctionGrid& grid, const glm::dvec3& texture, cons
             cells_per_mm = std::max(cells_per_mm, std::abs(direction[a]) * grid.dims[a]);
         }
     }
+    // A surface lies within one cell; it must not darken itself.
+    const double start = std::min(length, cells_per_mm > 0.0 ? 1.0 / cells_per_mm : 0.0);
+    length -= start;
     const int steps = std::max(1, static_cast<int>(std::ceil(std::min(length * cells_per_mm, 4096.0))));
     double depth = 0.0;
     for (int k = 0; k < steps; ++k) {
-        depth += grid.at(texture + direction * (length * (k + 0.5) / steps));
+        depth += grid.at(texture + direction * (start + length * (k + 0.5) / steps));
     }
     return std::exp(-depth * length / steps);
 }

@@ -41,7 +41,8 @@ struct ExtinctionGrid {
 
 /// Share of light that reaches a place (texture coordinates) from the world direction `towards`, of length 1,
 /// from no farther than `reach_mm`: exp of minus the extinction summed in steps of one cell at most, by
-/// midpoints.
+/// midpoints. The length of one cell next to the place is left out, so that surfaces do not darken
+/// themselves.
 [[nodiscard]] double transmittance(const ExtinctionGrid& grid, const glm::dvec3& texture,
                                    const glm::dvec3& towards, double reach_mm);
 

@@ -19,6 +19,12 @@ namespace {
 constexpr int brick_size = 4;
 constexpr int blue_noise_size = 32;
 
+/// accumulate and density compose by transfer functions of their own.
+RayFunction marched_as(RayFunction function) {
+    return function == RayFunction::accumulate || function == RayFunction::density ? RayFunction::composite
+                                                                                   : function;
+}
+
 RayFunction function_for(Technique technique) {
     switch (technique) {
         case Technique::mip:
@@ -82,7 +88,7 @@ std::span<const ProgramDesc> RayCastEffect::programs() const {
     variants_.clear();
     // What a file's preset asks for is known when the file is read.
     const bool by_file = !params_.function && !params_.transfer_function.file.empty();
-    const RayFunction given = params_.function.value_or(RayFunction::composite);
+    const RayFunction given = params_.function ? marched_as(*params_.function) : RayFunction::composite;
     for (const RayFunction function : {RayFunction::composite, RayFunction::mip, RayFunction::minip,
                                        RayFunction::average, RayFunction::xray, RayFunction::isosurface}) {
         if (!by_file && function != given) {
@@ -168,7 +174,18 @@ void RayCastEffect::find_crop() {
 
 void RayCastEffect::find_function(Prepare& prepare) {
     function_ = load_function(params_.transfer_function, prepare.assets());
-    variant_.function = params_.function.value_or(function_for(function_.technique));
+    const RayFunction wanted = params_.function.value_or(function_for(function_.technique));
+    variant_.function = marched_as(wanted);
+    std::size_t faults = 0;
+    if (wanted == RayFunction::density) {
+        function_ = normalised(density_function(function_, params_.density), faults);
+    } else if (wanted == RayFunction::accumulate) {
+        const glm::dmat4 box = source_->volume().grid.texture_to_world();
+        function_ = normalised(
+            accumulate_function(params_.accumulate, source_->statistics.min, source_->statistics.max,
+                                glm::length(glm::dvec3(box * glm::dvec4(1, 1, 1, 0)))),
+            faults);
+    }
     variant_.look = projects() ? Look::Variant{} : Look::variant(params_.look, function_);
 }
 
@@ -223,6 +240,8 @@ std::vector<StoredRange> RayCastEffect::visible() const {
     };
     switch (variant_.function) {
         case RayFunction::composite:
+        case RayFunction::accumulate:
+        case RayFunction::density:
             return shown;
         case RayFunction::isosurface:
             return stored_ranges(params_.isosurface, map);
@@ -292,13 +311,25 @@ bool RayCastEffect::find_bricks(Prepare& prepare) {
     return true;
 }
 
+/// Box, in texture coordinates, outside which nothing is drawn.
+Bounds RayCastEffect::seen_bounds() const {
+    Bounds bounds{glm::vec3(box_min_), glm::vec3(box_max_)};
+    // An X-ray shows the whole box: what absorbs nothing is let through.
+    if (variant_.skipping != Skipping::none && variant_.function != RayFunction::xray) {
+        const glm::vec3 bricks = glm::vec3(source_->volume().grid.dims) / static_cast<float>(brick_size);
+        const VoxelBox& occupied = skip_map_.occupied_box();
+        bounds.min = glm::max(bounds.min, glm::vec3(occupied.first) / bricks);
+        bounds.max = glm::min(bounds.max, glm::vec3(occupied.first + occupied.size) / bricks);
+    }
+    return bounds;
+}
+
 Work RayCastEffect::prepare(Prepare& prepare) {
     const bool changed = parameters_key_ != prepare.parameters_key();
     source_ = load_source(prepare.assets(), params_.volume, prepare.frame());
     if (!source_) {
         return Work::idle("the host gives no volume of this name");
     }
-    parameters_key_ = prepare.parameters_key();
     const bool coefficients = params_.sampling.reconstruction.uses_coefficients();
     sampled_channel_ = coefficients ? 0 : params_.volume.channel;
     sampled_ = coefficients ? load_coefficients(prepare.assets(), *source_, params_.volume.channel) : source_;
@@ -307,8 +338,10 @@ Work RayCastEffect::prepare(Prepare& prepare) {
         find_function(prepare);
         find_crop();
         texture_to_world_ = placed(volume.grid, params_.volume.placement);
+        parameters_key_ = prepare.parameters_key();  // only now: any of the above may fail or be cancelled
     }
-    if (params_.transfer_function.empty() && variant_.function != RayFunction::xray) {
+    if (params_.transfer_function.empty() && variant_.function != RayFunction::xray &&
+        params_.function != RayFunction::accumulate) {
         return Work::idle("there is no transfer function");
     }
     if (!invertible(texture_to_world_)) {
@@ -322,12 +355,13 @@ Work RayCastEffect::prepare(Prepare& prepare) {
     if (box.empty()) {
         return Work::idle("everything is clipped");
     }
-    lattice_ = make_lattice(params_.sampling, texture_to_world_, volume.grid.dims, prepare.log());
+    lattice_ = make_lattice(params_.sampling, texture_to_world_, volume.grid.dims, prepare.log(),
+                            prepare.frame().quality.step_factor);
     if (!find_bricks(prepare)) {
         return Work::idle("nothing of the volume is to be seen");
     }
     const View& view = prepare.frame().eye();
-    const Bounds bounds{glm::vec3(box.min), glm::vec3(box.max)};
+    const Bounds bounds = seen_bounds();
     const glm::ivec2 size = prepare.size("colour");
     variant_.surface = prepare.has("depth");
     variant_.background = prepare.has("background");
@@ -342,6 +376,7 @@ Work RayCastEffect::prepare(Prepare& prepare) {
                                   .add(parameters_key_)
                                   .add(source_->key)
                                   .add(source_->version())
+                                  .add(lattice_.slab_mm)
                                   .add(look_.key())
                                   .add(view.view)
                                   .add(view.projection)
@@ -436,6 +471,9 @@ void RayCastEffect::draw(const Pass& pass) {
                    pass, program);
     }
     if (variant_.skipping != Skipping::none) {
+        const VoxelBox& occupied = skip_map_.occupied_box();
+        program.set("u_occupied_low", glm::vec3(occupied.first));
+        program.set("u_occupied_high", glm::vec3(occupied.first + occupied.size));
         program.set("u_bricks_per_unit",
                     glm::vec3(glm::dvec3(volume.grid.dims) / static_cast<double>(brick_size)));
         pass.bind(program, "u_bricks", skip_map_.texture(pass.gl()), gl::Filter::nearest);

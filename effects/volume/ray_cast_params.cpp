@@ -5,8 +5,8 @@
 namespace viscera::volume {
 namespace {
 
-constexpr std::array<std::string_view, 6> function_names{"composite", "mip",  "minip",
-                                                         "average",   "xray", "isosurface"};
+constexpr std::array<std::string_view, 8> function_names{"composite", "mip",        "minip",      "average",
+                                                         "xray",      "isosurface", "accumulate", "density"};
 
 }  // namespace
 
@@ -43,6 +43,8 @@ void RayCastParams::visit(ParamVisitor& v) {
     v.field({.name = "xray", .doc = "Attenuation and film (xray)."}, xray);
     v.field({.name = "threshold", .doc = "Values below it are dropped (mip, minip, average)."}, threshold);
     v.field({.name = "isosurface", .doc = "Surfaces of constant value (isosurface)."}, isosurface);
+    v.field({.name = "accumulate", .doc = "Opacity and brightness by value (accumulate)."}, accumulate);
+    v.field({.name = "density", .doc = "One density for all that is seen (density)."}, density);
     look.visit(v);
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "effects/volume/classic.h"
 #include "effects/volume/isosurface.h"
 #include "effects/volume/look.h"
 #include "effects/volume/sampling.h"
@@ -12,7 +13,7 @@
 
 namespace viscera::volume {
 
-enum class RayFunction { composite, mip, minip, average, xray, isosurface };
+enum class RayFunction { composite, mip, minip, average, xray, isosurface, accumulate, density };
 [[nodiscard]] std::span<const std::string_view> choice_names(RayFunction function);
 
 /// Part of the volume that is shown [voxels], a box; size 0 of an axis: all of it.
@@ -40,6 +41,8 @@ struct RayCastParams {
     XrayParams xray;
     std::optional<double> threshold;
     IsosurfaceParams isosurface;
+    AccumulateParams accumulate;
+    DensityParams density;
     LookParams look;
 
     void visit(ParamVisitor& v);

@@ -59,7 +59,7 @@ void SamplingParams::visit(ParamVisitor& v) {
 }
 
 Lattice make_lattice(const SamplingParams& params, const glm::dmat4& texture_to_world, const glm::ivec3& dims,
-                     Log& log) {
+                     Log& log, double step_factor) {
     double spacing = 1e300;
     double diagonal = 0.0;
     for (int a = 0; a < 3; ++a) {
@@ -69,7 +69,7 @@ Lattice make_lattice(const SamplingParams& params, const glm::dmat4& texture_to_
     }
     // Two samples a slab everywhere but at midpoints, so that a step costs the same whatever the scheme.
     const double samples = params.scheme == Scheme::midpoint ? 1.0 : 2.0;
-    Lattice lattice{.slab_mm = params.step * spacing * samples};
+    Lattice lattice{.slab_mm = params.step * step_factor * spacing * samples};
     if (lattice.slab_mm * most_slabs < diagonal) {
         log.fault("volume.step", "the step would take more than " + std::to_string(most_slabs) +
                                      " slabs through the volume; it is made longer");

@@ -52,9 +52,9 @@ struct Lattice {
 inline constexpr int most_slabs = 30000;
 
 /// texture_to_world: invertible. A step that would take more than most_slabs is made longer, with a fault in
-/// the log.
+/// the log. step_factor: of the frame's quality.
 [[nodiscard]] Lattice make_lattice(const SamplingParams& params, const glm::dmat4& texture_to_world,
-                                   const glm::ivec3& dims, Log& log);
+                                   const glm::ivec3& dims, Log& log, double step_factor = 1.0);
 
 /// How far beyond its own brick a slab's samples can lie [voxels], without the filter's support.
 [[nodiscard]] double reach(const SamplingParams& params, const Lattice& lattice);

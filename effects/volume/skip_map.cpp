@@ -29,7 +29,8 @@ std::shared_ptr<Bricks> load_bricks(Assets& assets, const Source& source, int ch
         changed = source.live->changes_since(bricks->version, everything);
     }
     if (everything) {
-        bricks->grid = summarise(volume, channel, size, border, empty);
+        bricks->grid =
+            summarise(volume, channel, size, border, empty, assets.progress("summarising " + volume.source));
     }
     for (const VoxelBox& box : changed) {
         resummarise(bricks->grid, volume, channel, empty, box);
@@ -83,6 +84,27 @@ double find_smooth(const BrickGrid& bricks, const SmoothRule& rule, float oversh
     return static_cast<double>(count) / static_cast<double>(bricks.count());
 }
 
+/// Box around the bricks that are not 0.
+VoxelBox box_around(glm::ivec3 dims, std::span<const std::uint8_t> occupied) {
+    glm::ivec3 low = dims;
+    glm::ivec3 high(-1);
+    const auto width = static_cast<std::size_t>(dims.x);
+    std::size_t row = 0;
+    for (int z = 0; z < dims.z; ++z) {
+        for (int y = 0; y < dims.y; ++y, row += width) {
+            const auto bricks = occupied.subspan(row, width);
+            const auto first = std::ranges::find(bricks, std::uint8_t{1});
+            if (first == bricks.end()) {
+                continue;
+            }
+            const auto last = std::find(bricks.rbegin(), bricks.rend(), std::uint8_t{1});
+            low = glm::min(low, glm::ivec3(first - bricks.begin(), y, z));
+            high = glm::max(high, glm::ivec3(dims.x - 1 - (last - bricks.rbegin()), y, z));
+        }
+    }
+    return high.x < 0 ? VoxelBox{} : VoxelBox{low, high - low + 1};
+}
+
 }  // namespace
 
 void SkipMap::update(const BrickGrid& bricks, std::span<const StoredRange> visible, const VoxelBox& crop,
@@ -94,6 +116,7 @@ void SkipMap::update(const BrickGrid& bricks, std::span<const StoredRange> visib
     dims_ = bricks.dims;
     find_occupied(bricks, visible, crop, occupied_, overshoot);
     occupancy_ = volume::occupancy(occupied_);
+    box_ = box_around(dims_, occupied_);
     signed_distance(dims_, occupied_, distance_, scratch_);
     texels_.resize(occupied_.size());
     std::ranges::transform(distance_, texels_.begin(), [](std::int8_t d) {

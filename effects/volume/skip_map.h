@@ -43,6 +43,8 @@ class SkipMap {
                 const SmoothRule& smooth, std::uint64_t key, float overshoot = 0.0F);
     /// Share of bricks that show something.
     [[nodiscard]] double occupancy() const { return occupancy_; }
+    /// Box around all bricks that show something; nothing outside it does.
+    [[nodiscard]] const VoxelBox& occupied_box() const { return box_; }
     /// Share of bricks in which long slabs do.
     [[nodiscard]] double smooth_share() const { return smooth_share_; }
     /// A texture of unsigned bytes: 32 * kind (0 empty, 1 occupied, 2 smooth) + distance in bricks to the
@@ -53,6 +55,7 @@ class SkipMap {
     std::uint64_t key_ = 0;
     glm::ivec3 dims_{0};
     double occupancy_ = 1.0;
+    VoxelBox box_;  ///< [bricks]
     double smooth_share_ = 0.0;
     std::vector<std::uint8_t> occupied_;
     std::vector<std::uint8_t> kind_;

@@ -46,7 +46,10 @@ std::shared_ptr<const Source> load_source(Assets& assets, const SourceParams& pa
     return assets.shared<Source>(key, [&] {
         auto source = std::make_shared<Source>();
         source->owned = std::make_shared<const Volume>(
-            io::load_volume(params.file.path, {.reduce = params.reduce}, assets.log()));
+            io::load_volume(params.file.path,
+                            {.progress = assets.progress("loading " + params.file.path.filename().string()),
+                             .reduce = params.reduce},
+                            assets.log()));
         source->statistics =
             statistics(*source->owned, std::min(params.channel, source->owned->channels - 1));
         source->key = key;
