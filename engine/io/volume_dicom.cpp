@@ -9,6 +9,7 @@
 #include <numeric>
 #include <optional>
 
+#include "engine/io/dicom_check.h"
 #include "engine/io/file_bytes.h"
 #include "engine/io/volume_itk.h"
 #include "engine/io/volume_readers.h"
@@ -74,7 +75,28 @@ ImageIo::Pointer open(const std::filesystem::path& file) {
     return io;
 }
 
+/// GDCM puts the axes of the world in place of axes that are none.
+void check_orientation(std::string text) {
+    if (text.empty()) {
+        return;
+    }
+    std::ranges::replace(text, '\\', ' ');
+    std::array<double, 6> v{};
+    std::string_view rest = text;
+    for (double& number : v) {
+        number = to_number(take_word(rest)).value_or(0.0);
+    }
+    const glm::dvec3 row(v[0], v[1], v[2]);
+    const glm::dvec3 column(v[3], v[4], v[5]);
+    constexpr double rounding = 1e-2;
+    if (!(std::abs(glm::length(row) - 1.0) < rounding && std::abs(glm::length(column) - 1.0) < rounding &&
+          std::abs(glm::dot(row, column)) < rounding)) {
+        throw std::runtime_error("ImageOrientationPatient holds no two axes at right angles");
+    }
+}
+
 Slice describe_slice(const std::filesystem::path& file) {
+    check_dicom(read_file(file));
     const ImageIo::Pointer io = open(file);
     Slice slice{.file = file, .series = tag(*io, "0020|000e"), .modality = tag(*io, "0008|0060")};
     const std::optional<FileScalar> type = scalar_of(io->GetInternalComponentType());
@@ -94,6 +116,7 @@ Slice describe_slice(const std::filesystem::path& file) {
             slice.direction[a][static_cast<int>(row)] = column[row];
         }
     }
+    check_orientation(tag(*io, "0020|0037"));
     slice.slope = io->GetRescaleSlope();
     slice.intercept = io->GetRescaleIntercept();
     slice.has_position = slice.dims.z > 1 || !tag(*io, "0020|0032").empty();
@@ -282,7 +305,8 @@ std::vector<Slice> find_slices(const Reading& reading) {
         try {
             slices.push_back(describe_slice(file));
         } catch (const std::exception& error) {
-            const std::string text = "'" + file.filename().string() + "' is no DICOM image that can be read";
+            const std::string text =
+                "'" + file.filename().string() + "' is no DICOM image that can be read: " + words_of(error);
             // Folders often hold a directory, a report or a presentation state beside the images.
             reading.log.fault("volume.dicom_file", reading.file.string() + ": " + text);
             reason = text;

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "engine/core/error.h"
@@ -73,6 +74,21 @@ FileScalar element_type(std::string_view name, const Reading& reading) {
     return found->second;
 }
 
+/// Where ITK only says that the file cannot be read, or takes what is none.
+void check_numbers(const MetaHeader& header, std::initializer_list<std::string_view> names, bool positive,
+                   const Reading& reading) {
+    const std::string_view text = header.get(names);
+    if (text.empty()) {
+        return;
+    }
+    for (const double number : numbers_of(text, *names.begin(), reading)) {
+        if (!std::isfinite(number) || (positive && number <= 0.0)) {
+            reading.fail(std::string(*names.begin()) + ": '" + printable(text) + "' must be finite" +
+                         (positive ? " and more than 0 (spacing)" : ""));
+        }
+    }
+}
+
 VolumeHead head_of(const MetaHeader& header, const Reading& reading) {
     VolumeHead head;
     const std::vector<double> dims = numbers_of(header.get({"DimSize"}), "DimSize", reading);
@@ -82,6 +98,10 @@ VolumeHead head_of(const MetaHeader& header, const Reading& reading) {
         reading.fail("NDims and DimSize do not say a volume of 2 to 4 axes");
     }
     head.volume.grid.dims = dims_of(dims, "DimSize", reading);
+    check_numbers(header, {"ElementSpacing"}, true, reading);
+    check_numbers(header, {"ElementSize"}, true, reading);
+    check_numbers(header, {"Offset", "Position", "Origin"}, false, reading);
+    check_numbers(header, {"TransformMatrix", "Rotation", "Orientation"}, false, reading);
     head.type = element_type(header.get({"ElementType"}), reading);
     if (const std::string_view channels = header.get({"ElementNumberOfChannels"}); !channels.empty()) {
         head.volume.channels =

@@ -117,6 +117,9 @@ NiftiHeader parse(std::string_view bytes, const Reading& reading) {
         header.version = 0;
         header.single_file = false;
         header.slope = 0.0;
+        header.quaternion = {};
+        header.offset = {};
+        header.srow = glm::dmat4(1.0);
         header.qform = 0;
         header.sform = 0;
         header.voxel_offset = 0.0;
@@ -207,6 +210,18 @@ VolumeGrid grid_of(const NiftiHeader& header, const std::filesystem::path& file,
     return own_grid(header, dims);
 }
 
+/// ITK decomposes whatever the sform holds.
+bool all_finite(const NiftiHeader& header) {
+    bool finite = true;
+    for (int i = 0; i < 3; ++i) {
+        finite = finite && std::isfinite(header.quaternion[i]) && std::isfinite(header.offset[i]);
+        for (int column = 0; column < 4; ++column) {
+            finite = finite && std::isfinite(header.srow[i][column]);
+        }
+    }
+    return finite;
+}
+
 /// Sizes, type and channels; the spacing on disk has to hold before anything else looks at it.
 VolumeHead head_of(const NiftiHeader& header, const Reading& reading) {
     const auto axes = header.dim[0];
@@ -225,6 +240,9 @@ VolumeHead head_of(const NiftiHeader& header, const Reading& reading) {
             reading.fail("pixdim: spacing " + std::to_string(spacing) + " of axis " + std::to_string(axis) +
                          " must be finite and not 0");
         }
+    }
+    if (!all_finite(header)) {
+        reading.fail("the quaternion, offset or rows of its orientation are not finite");
     }
     const VoxelType type = voxel_type(header.datatype, reading);
     head.type = type.type;

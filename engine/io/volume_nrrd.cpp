@@ -196,6 +196,15 @@ std::optional<double> value_of(const NrrdHeader& header, std::string_view key, c
     return one_number(found->second, key, reading);
 }
 
+/// ITK 5.2 turns LAS over along x, where it is y that differs from LPS: half a turn about z sets it right.
+void half_turn(VolumeGrid& grid) {
+    const glm::dvec3 turn(-1.0, -1.0, 1.0);
+    grid.origin_mm *= turn;
+    for (int axis = 0; axis < 3; ++axis) {
+        grid.direction[axis] *= turn;
+    }
+}
+
 }  // namespace
 
 Volume read_nrrd(const Reading& reading) {
@@ -213,6 +222,10 @@ Volume read_nrrd(const Reading& reading) {
         const ItkHeader itk = read_itk_header(ItkFormat::nrrd, reading.file);
         axes = axes_of(sizes, itk, reading);
         head.volume.grid = itk.grid;
+        if (const std::string space = lower(header.get("space"));
+            space == "left-anterior-superior" || space == "las") {
+            half_turn(head.volume.grid);
+        }
     } catch (const Error&) {
         throw;
     } catch (const std::exception& error) {
