@@ -311,9 +311,8 @@ bool RayCastEffect::find_bricks(Prepare& prepare) {
     return true;
 }
 
-/// Box, in texture coordinates, outside which nothing is drawn.
-Bounds RayCastEffect::seen_bounds() const {
-    Bounds bounds{glm::vec3(box_min_), glm::vec3(box_max_)};
+/// The part of a box, in texture coordinates, outside which nothing is drawn.
+Bounds RayCastEffect::seen_bounds(Bounds bounds) const {
     // An X-ray shows the whole box: what absorbs nothing is let through.
     if (variant_.skipping != Skipping::none && variant_.function != RayFunction::xray) {
         const glm::vec3 bricks = glm::vec3(source_->volume().grid.dims) / static_cast<float>(brick_size);
@@ -361,7 +360,7 @@ Work RayCastEffect::prepare(Prepare& prepare) {
         return Work::idle("nothing of the volume is to be seen");
     }
     const View& view = prepare.frame().eye();
-    const Bounds bounds = seen_bounds();
+    const Bounds bounds = seen_bounds({glm::vec3(box.min), glm::vec3(box.max)});
     const glm::ivec2 size = prepare.size("colour");
     variant_.surface = prepare.has("depth");
     variant_.background = prepare.has("background");

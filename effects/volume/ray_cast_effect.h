@@ -8,6 +8,7 @@
 #include "effects/volume/ray_cast_params.h"
 #include "effects/volume/skip_map.h"
 #include "effects/volume/slab_texture.h"
+#include "engine/core/mesh_data.h"
 #include "engine/runtime/effect.h"
 
 namespace viscera::volume {
@@ -43,6 +44,7 @@ class RayCastEffect final : public Effect {
     [[nodiscard]] std::vector<StoredRange> visible() const;
     [[nodiscard]] SmoothRule smooth_rule() const;
     [[nodiscard]] bool find_bricks(Prepare& prepare);
+    [[nodiscard]] Bounds seen_bounds(Bounds bounds) const;
 
     void find_crop();
     void bind_blue_noise(const Pass& pass, const gl::Program& program);

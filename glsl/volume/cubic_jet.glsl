@@ -33,11 +33,10 @@ vec4 cubic_plane(CubicStencil s, int z) {
 // Value and derivative along x, y and z per voxel.
 vec4 cubic_jet(vec3 place) {
     ivec3 size = volume_size();
-    vec3 p = place * vec3(size) - 0.5;
-    vec3 cell = floor(p);
-    Cubic w = cubic_weights(p - cell);
-    Cubic d = cubic_slopes(p - cell);
-    ivec3 i = ivec3(cell);
+    Cell cell = cell_at(place);
+    Cubic w = cubic_weights(cell.a);
+    Cubic d = cubic_slopes(cell.a);
+    ivec3 i = ivec3(cell.low);
     const ivec4 taps = ivec4(-1, 0, 1, 2);
     CubicStencil s = CubicStencil(
         clamp(i.x + taps, ivec4(0), ivec4(size.x - 1)), clamp(i.y + taps, ivec4(0), ivec4(size.y - 1)),

@@ -2,11 +2,10 @@
 
 // Value and derivative along x, y and z per voxel.
 vec4 linear_jet(vec3 place) {
-    vec3 p = place * vec3(volume_size()) - 0.5;
-    vec3 cell = floor(p);
-    vec3 a = p - cell;
-    ivec3 low = inside_volume(ivec3(cell));
-    ivec3 high = inside_volume(ivec3(cell) + 1);
+    Cell cell = cell_at(place);
+    vec3 a = cell.a;
+    ivec3 low = inside_volume(ivec3(cell.low));
+    ivec3 high = inside_volume(ivec3(cell.low) + 1);
     // Along x for (y, z) = (low, low), (high, low), (low, high), (high, high).
     vec4 start = vec4(texel(low), texel(ivec3(low.x, high.y, low.z)), texel(ivec3(low.xy, high.z)),
                       texel(ivec3(low.x, high.yz)));

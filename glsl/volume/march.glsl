@@ -24,8 +24,10 @@ void march(Ray ray, vec2 interval, float offset, inout State state) {
     vec3 extent = ray.direction * u_slab;
 #ifdef SKIP
     Leaper leaper = make_leaper(first, extent);
-    int k = 0;
-    while (k < count) {
+    vec2 span = clamp(occupied_span(leaper), 0.0, float(count));
+    int k = max(int(span.x) - 1, 0);
+    int last = min(int(span.y) + 1, count);
+    while (k < last) {
         // Leaping and sampling are loops of their own: in one loop every step would pay for both. Leaping finds all of the
         // next stretch in which slabs are sampled, from its first brick to its last, since pixels that are computed side by
         // side wait for each other at the end of each loop. Loops end by their condition alone: each `break` is one more
@@ -38,10 +40,10 @@ void march(Ray ray, vec2 interval, float offset, inout State state) {
             Run run = run_from(leaper, float(end) + 0.5);
             bool goes_on = run.kind == kind;
             bool begins = kind == run_empty;
-            end = goes_on || begins ? min(end + 1 + int(min(run.length, float(count))), count) : end;
+            end = goes_on || begins ? min(end + 1 + int(min(run.length, float(count))), last) : end;
             k = goes_on && begins ? end : k;
             kind = begins ? run.kind : kind;
-            leaping = (goes_on || begins) && end < count;
+            leaping = (goes_on || begins) && end < last;
         }
         while (k < end) {
 #ifdef ADAPTIVE

@@ -68,6 +68,11 @@ void march(Ray ray, vec2 interval, float offset, inout State state) {
     int turns = 0;
 #ifdef SKIP
     Leaper leaper = make_leaper(first, ray.direction);
+    vec2 span = occupied_span(leaper);
+    if (span.x >= span.y) {
+        return;
+    }
+    walk = span.x > 0.0 ? leap(walk, span.x, length_mm) : walk;
     while (walk.t < length_mm && turns < u_slab_limit) {
         float end = length_mm;
         while (walk.t < length_mm && turns < u_slab_limit) {

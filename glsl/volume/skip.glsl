@@ -2,6 +2,8 @@
 // in an empty run, whatever the ray function, so it can be left out.
 uniform usampler3D u_bricks;     // kind * 32 + distance to the nearest brick of another kind
 uniform vec3 u_bricks_per_unit;  // bricks per texture coordinate
+uniform vec3 u_occupied_low;     // box around all bricks that are not empty [bricks]
+uniform vec3 u_occupied_high;
 
 const uint run_empty = 0U;
 const uint run_full = 1U;    // every slab is sampled
@@ -33,4 +35,13 @@ Run run_from(Leaper leaper, float at) {
     vec3 high = vec3(brick) + reach;
     vec3 leave = (mix(low, high, greaterThan(leaper.extent, vec3(0.0))) - place) * leaper.inverse;
     return Run(max(min(min(leave.x, leave.y), leave.z), 0.0), entry >> 5);
+}
+
+// Where the march enters and leaves the box around everything that is to be seen.
+vec2 occupied_span(Leaper leaper) {
+    vec3 a = (u_occupied_low - leaper.first) * leaper.inverse;
+    vec3 b = (u_occupied_high - leaper.first) * leaper.inverse;
+    vec3 enter = min(a, b);
+    vec3 leave = max(a, b);
+    return vec2(max(max(enter.x, enter.y), enter.z), min(min(leave.x, leave.y), leave.z));
 }
