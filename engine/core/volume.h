@@ -3,7 +3,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -12,11 +11,9 @@
 
 #include <glm/glm.hpp>
 
-namespace viscera {
+#include "engine/core/progress.h"
 
-/// Told how far a long piece of work is, in [0, 1]. Returning false stops the work, which then throws
-/// Error(usage) "cancelled".
-using Progress = std::function<bool(double fraction)>;
+namespace viscera {
 
 /// How a voxel lies in memory; little-endian.
 enum class ScalarType { u8, i8, u16, i16, f32 };

@@ -10,4 +10,11 @@ std::shared_ptr<const Image> Assets::image(const std::filesystem::path& file) {
                          [&file] { return std::make_shared<Image>(io::read_image(file)); });
 }
 
+Progress Assets::progress(std::string what) const {
+    if (!progress_) {
+        return {};
+    }
+    return [this, what = std::move(what)](double fraction) { return progress_(what, fraction); };
+}
+
 }  // namespace viscera

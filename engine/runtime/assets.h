@@ -5,11 +5,13 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <string>
 #include <typeindex>
 #include <utility>
 
 #include "engine/core/image.h"
 #include "engine/core/log.h"
+#include "engine/core/progress.h"
 
 namespace viscera {
 
@@ -18,7 +20,7 @@ namespace viscera {
 /// Whatever holds OpenGL objects dies with the renderer, while its context is current.
 class Assets {
   public:
-    explicit Assets(Log& log) : log_(log) {}
+    explicit Assets(Log& log, ProgressCallback progress = {}) : log_(log), progress_(std::move(progress)) {}
 
     /// The object of type T known by `key` (a hash of everything it is made from); made by `make` on first
     /// use.
@@ -50,6 +52,9 @@ class Assets {
     /// Number of objects held.
     [[nodiscard]] std::size_t size() const { return entries_.size(); }
     [[nodiscard]] Log& log() { return log_; }
+    /// For long work, so that whoever waits is told of it as `what` and may cancel it. Empty when nobody
+    /// asked to be told.
+    [[nodiscard]] Progress progress(std::string what) const;
 
   private:
     static constexpr std::uint64_t kept_scenes = 8;
@@ -59,6 +64,7 @@ class Assets {
         std::uint64_t used = 0;  ///< number of the scene that last asked for it
     };
     Log& log_;
+    ProgressCallback progress_;
     std::map<Id, Entry> entries_;
     std::uint64_t scenes_ = 0;
 };

@@ -11,6 +11,7 @@
 #include "engine/core/camera.h"
 #include "engine/core/pixel_format.h"
 #include "engine/core/volume.h"
+#include "engine/runtime/quality.h"
 
 namespace viscera {
 
@@ -89,6 +90,7 @@ struct Frame {
     const HostValues* values = nullptr;
     std::span<const ImportedTexture> imported;
     std::span<const HostVolume> volumes;
+    Quality quality{};
     Present present;
     HostStatePolicy host_state = HostStatePolicy::restore;
 

@@ -1,6 +1,7 @@
 #include "engine/runtime/renderer.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <nlohmann/json.hpp>
 
@@ -40,6 +41,13 @@ bool same_place(const Port& a, const Port& b) {
            a.overwrites == b.overwrites;
 }
 
+bool reads_history(const SceneEffects& scene) {
+    return std::ranges::any_of(scene.effects, [](const std::unique_ptr<Effect>& effect) {
+        const std::vector<Port> ports = effect->ports();
+        return std::ranges::find(ports, Access::previous, &Port::access) != ports.end();
+    });
+}
+
 ContextInfo describe(const gl::Capabilities& capabilities) {
     ContextInfo info;
     info.vendor = capabilities.vendor;
@@ -74,7 +82,7 @@ class Renderer::Impl {
           info_(describe(capabilities_)),
           host_state_(*gl_),
           entry_(host_state_, log_),
-          assets_(log_),
+          assets_(log_, std::move(options.progress)),
           shaders_(*gl_, options.shaders ? options.shaders : embedded_shader_reader(), log_),
           samplers_(*gl_),
           black_(make_black(*gl_)),
@@ -99,6 +107,7 @@ class Renderer::Impl {
         expected_.assign(imported.begin(), imported.end());
         scene_ = std::move(scene);
         effects_ = std::move(effects);
+        has_history_ = reads_history(effects_);
         assets_.begin_scene();
         planned_ = false;
     }
@@ -137,6 +146,12 @@ class Renderer::Impl {
         if (frame.width < 1 || frame.height < 1) {
             throw Error(ErrorCode::usage, "frame", "needs a width and a height of at least 1 pixel");
         }
+        // Written so that NaN is refused, too.
+        if (!(frame.quality.step_factor >= 1.0 && std::isfinite(frame.quality.step_factor)) ||
+            !(frame.quality.resolution > 0.0 && frame.quality.resolution <= 1.0)) {
+            throw Error(ErrorCode::usage, "frame",
+                        "needs a step factor of at least 1 and a resolution in (0, 1]");
+        }
         if (scene_.passes.empty()) {
             throw Error(ErrorCode::usage, "frame", "there is no scene to render");
         }
@@ -150,7 +165,7 @@ class Renderer::Impl {
         if (capabilities_.debug_context) {
             messages.emplace(*gl_, log_);
         }
-        plan_for(frame);
+        plan_for(frame, planned_size(frame));
         report_.index = frame.index;
         report_.time_s = frame.time_s;
         report_.targets.clear();
@@ -233,13 +248,23 @@ class Renderer::Impl {
     std::vector<ImportedTarget> expected_;  ///< as set_scene() was told
     std::vector<ImportedTarget> imported_;  ///< as the last frame brought
     bool planned_ = false;
+    bool has_history_ = false;
     FrameReport report_;
 
   private:
-    void plan_for(const Frame& frame) {
+    /// Targets of the frame before, and those of the host, have a size that no single frame can change.
+    [[nodiscard]] glm::ivec2 planned_size(const Frame& frame) const {
+        const double share = has_history_ || !frame.imported.empty() ? 1.0 : frame.quality.resolution;
+        const auto scaled = [share](int pixels) {
+            return std::max(1, static_cast<int>(std::lround(share * pixels)));
+        };
+        return {scaled(frame.width), scaled(frame.height)};
+    }
+
+    void plan_for(const Frame& frame, glm::ivec2 size) {
         const bool same_imports = std::ranges::equal(imported_, frame.imported, same);
-        if (planned_ && same_imports && executor_.plan().width == frame.width &&
-            executor_.plan().height == frame.height) {
+        if (planned_ && same_imports && executor_.plan().width == size.x &&
+            executor_.plan().height == size.y) {
             return;
         }
         planned_ = false;  // until all of the below has worked
@@ -249,8 +274,8 @@ class Renderer::Impl {
                 {texture.target, texture.format, texture.width, texture.height, texture.writable});
         }
         const auto compile_with = [&](const std::vector<std::string>& more) {
-            return compile_scene(scene_, build_graph(scene_, effects_, imported_, more), frame.width,
-                                 frame.height, capabilities_.max_texture_2d);
+            return compile_scene(scene_, build_graph(scene_, effects_, imported_, more), size.x, size.y,
+                                 capabilities_.max_texture_2d);
         };
         dump_names_.clear();
         switch (dump_.kind) {

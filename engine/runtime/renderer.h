@@ -12,6 +12,7 @@
 #include "engine/core/image.h"
 #include "engine/core/log.h"
 #include "engine/core/plan.h"
+#include "engine/core/progress.h"
 #include "engine/core/scene.h"
 #include "engine/core/shader_source.h"
 #include "engine/runtime/effect.h"
@@ -40,6 +41,10 @@ struct RendererOptions {
     /// Called around each pass that draws, its clears included: for measuring.
     PassObserver observer;
     ComputeUse compute = ComputeUse::automatic;
+    /// Told of long work (reading volumes, summarising them) on the rendering thread, from within render();
+    /// must not call the renderer. When it returns false, render() throws Error(usage) "cancelled", nothing
+    /// is half-loaded, and the next render() begins that work anew.
+    ProgressCallback progress{};
 };
 
 /// One target of a frame, read back.
@@ -112,7 +117,7 @@ class Renderer {
     /// draws into a new one. 0: the output is empty or an imported texture.
     [[nodiscard]] unsigned release_texture(std::string_view output);
 
-    /// The plan of the last frame's size.
+    /// The plan of the last frame's size, which its quality may have made smaller than the frame.
     [[nodiscard]] const Plan& plan() const;
     /// Compiles every program again from a folder; programs that fail keep their last good form and are
     /// logged. Number of failures.
