@@ -12,8 +12,10 @@
 #include "engine/io/mesh.h"
 #include "engine/io/png.h"
 #include "engine/io/transfer_function.h"
+#include "engine/io/volume.h"
 #include "tests/io/sample_files.h"
 #include "tests/io/temp_folder.h"
+#include "tests/io/volume_files.h"
 
 namespace viscera::fuzz {
 namespace {
@@ -163,6 +165,25 @@ void run_shader(std::string_view bytes) {
     }
 }
 
+/// The first byte chooses the format; the rest is the file.
+void run_volume(std::string_view bytes) {
+    static constexpr std::array names{"fuzz.mha", "fuzz.nrrd", "fuzz.nii",  "fuzz.nii.gz", "fuzz.vtk",
+                                      "fuzz.vti", "fuzz.csv",  "fuzz.json", "fuzz.plist",  "fuzz.dcm"};
+    if (bytes.empty()) {
+        return;
+    }
+    const auto which = static_cast<std::size_t>(static_cast<unsigned char>(bytes[0]));
+    on_file(names.at(which % names.size()), bytes.substr(1), [](const std::filesystem::path& file) {
+        constexpr std::uint64_t most_bytes = std::uint64_t{64} << 20U;
+        Log log;
+        const Volume volume = io::load_volume(file, {.memory_limit = most_bytes}, log);
+        volume.validate();
+        const VolumeStatistics values = statistics(volume);
+        require(std::isfinite(values.min) && std::isfinite(values.max), "range that is not finite");
+        reduced(volume, 2).validate();
+    });
+}
+
 std::vector<std::string> scene_seeds() {
     return {R"({"version":1,"name":"a","resolution":[64,48],"time_s":1.5,"frames_per_second":15,
         "camera":{"kind":"c_arm","primary_deg":-30},"shared":{"s":{"a":1}},
@@ -246,7 +267,7 @@ std::vector<std::string> shader_seeds() {
     return {seed};
 }
 
-constexpr std::array<Target, 11> all{{{"scene", run_scene, scene_seeds},
+constexpr std::array<Target, 12> all{{{"scene", run_scene, scene_seeds},
                                       {"gltf", run_gltf, gltf_seeds},
                                       {"vtp", run_vtp, vtp_seeds},
                                       {"ply", run_ply, ply_seeds},
@@ -256,7 +277,30 @@ constexpr std::array<Target, 11> all{{{"scene", run_scene, scene_seeds},
                                       {"exr", run_exr, exr_seeds},
                                       {"png", run_png, png_seeds},
                                       {"transfer_function", run_transfer_function, transfer_function_seeds},
-                                      {"shader", run_shader, shader_seeds}}};
+                                      {"shader", run_shader, shader_seeds},
+                                      {"volume", run_volume, volume_seeds}}};
+
+std::vector<std::string> volume_seeds() {
+    const std::string shorts = test::bytes_of(test::ramp<std::int16_t>());
+    const std::string nifti = test::Nifti(4, 16).bytes + shorts;
+    const std::string array = R"(<DataArray type="Int16" Name="density" format=)";
+    const std::array files{test::mha("MET_SHORT", shorts),
+                           test::nrrd("short", "gzip", test::deflated(shorts, 31)),
+                           nifti,
+                           test::deflated(nifti, 31),
+                           test::legacy_vtk("BINARY", "short", shorts),
+                           test::vti(array + "\"ascii\">" + test::ramp_text<int>() + "</DataArray>"),
+                           test::csv(),
+                           std::string(R"({"file":"none.raw","dims":[4,3,2],"type":"i16","axes":"RAS"})"),
+                           std::string("<plist><dict><key>matrix</key><dict><key>dtype</key><string>int16</"
+                                       "string></dict></dict></plist>"),
+                           test::dicom({})};
+    std::vector<std::string> seeds;
+    for (std::size_t i = 0; i < files.size(); ++i) {
+        seeds.push_back(static_cast<char>(i) + files.at(i));
+    }
+    return seeds;
+}
 
 }  // namespace
 
