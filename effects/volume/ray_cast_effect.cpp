@@ -103,7 +103,7 @@ std::span<const ProgramDesc> RayCastEffect::programs() const {
             if (function == RayFunction::composite) {
                 program.defines.emplace_back("COMPOSITE");
             } else if (function == RayFunction::isosurface) {
-                add_defines(params_.isosurface, true, program.defines);
+                add_defines(params_.isosurface, params_.sampling.reconstruction.is_tricubic(), program.defines);
             } else {
                 program.defines.push_back("PROJECTION " + std::to_string(static_cast<int>(function) - 1));
                 if (params_.threshold) {

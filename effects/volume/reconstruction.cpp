@@ -55,6 +55,10 @@ bool ReconstructionParams::uses_coefficients() const {
     return prefilter && is_bspline(filter);
 }
 
+bool ReconstructionParams::is_tricubic() const {
+    return is_cubic(filter);
+}
+
 gl::Filter ReconstructionParams::texture_filter() const {
     const bool by_texture_unit = filter == ReconstructionFilter::linear ||
                                  filter == ReconstructionFilter::bspline ||

@@ -38,6 +38,8 @@ struct ReconstructionParams {
 
     /// Whether the texture holds B-spline coefficients instead of voxels.
     [[nodiscard]] bool uses_coefficients() const;
+    /// Whether the field is of a higher degree than three along a ray through a cell.
+    [[nodiscard]] bool is_tricubic() const;
     /// How the texture unit filters.
     [[nodiscard]] gl::Filter texture_filter() const;
     /// What a brick's range must include: the farthest voxel that counts lies less than this beyond the place

@@ -55,16 +55,18 @@ vec3 lit_by_eye(vec3 colour, vec3 local, vec3 direction) {
 }
 
 #ifdef REFINE
-// The cubic only stands for the field: three steps of regula falsi on the field itself, inside a bracket around the root.
+// The filter is no cubic in its cells, the cubic only stands for it: three steps of regula falsi on the field itself, inside a bracket around the root.
 float refined(Slab slab, float value, float root, float from) {
     vec3 begin = slab.centre - 0.5 * slab.extent;
     float low = max(root - 0.05, from);
     float high = min(root + 0.05, 1.0);
     float f_low = sample_volume(to_sample(begin + low * slab.extent)) - value;
     float f_high = sample_volume(to_sample(begin + high * slab.extent)) - value;
+    // Where the ray grazes the surface, both ends may lie on one side: the cubic's root is the better one then.
+    bool brackets = (f_low < 0.0) != (f_high < 0.0);
     for (int i = 0; i < 3; ++i) {
         float rise = f_high - f_low;
-        float middle = abs(rise) > 1e-30 ? clamp(low - f_low * (high - low) / rise, low, high) : root;
+        float middle = brackets ? clamp(low - f_low * (high - low) / rise, low, high) : root;
         float f = sample_volume(to_sample(begin + middle * slab.extent)) - value;
         bool before = (f < 0.0) == (f_low < 0.0);
         low = before ? middle : low;
