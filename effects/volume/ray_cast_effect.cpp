@@ -340,7 +340,7 @@ Work RayCastEffect::prepare(Prepare& prepare) {
         parameters_key_ = prepare.parameters_key();  // only now: any of the above may fail or be cancelled
     }
     if (params_.transfer_function.empty() && variant_.function != RayFunction::xray &&
-        params_.function != RayFunction::accumulate) {
+        variant_.function != RayFunction::accumulate && variant_.function != RayFunction::isosurface) {
         return Work::idle("there is no transfer function");
     }
     if (!invertible(texture_to_world_)) {
