@@ -16,7 +16,7 @@ State begin() {
 bool take_slab(inout State state, Slab slab) {
 #if SCHEME == MIDPOINT
     vec4 c = material(slab.centre);
-    state.depth += c.a * slab.length;
+    state.depth += c.a * slab.length_mm;
     float transmittance = exp(-state.depth);
     state.colour += (state.transmittance - transmittance) * c.rgb;
     state.transmittance = transmittance;
@@ -29,7 +29,7 @@ bool take_slab(inout State state, Slab slab) {
     float rise = 0.8660254037844386 * (behind - before);
     vec4 mean = slab_mean(middle - rise, middle + rise);
     vec4 c = appearance(vec4(mean.rgb / max(mean.a, 1e-30), mean.a), slab.centre);
-    state.depth += c.a * slab.length;
+    state.depth += c.a * slab.length_mm;
     float transmittance = exp(-state.depth);
     state.colour += (state.transmittance - transmittance) * c.rgb;
     state.transmittance = transmittance;
@@ -42,9 +42,9 @@ bool take_slab(inout State state, Slab slab) {
     float slope = 0.8660254037844386 * (b.a - a.a);
     // Optical depth from the slab's start to each point: h (mean (u + 1/2) + slope (u^2 - 1/4)), u = -+gauss_point.
     const float bend = gauss_point * gauss_point - 0.25;
-    float weight_a = a.a * exp(-slab.length * (mean * (0.5 - gauss_point) + slope * bend));
-    float weight_b = b.a * exp(-slab.length * (mean * (0.5 + gauss_point) + slope * bend));
-    state.depth += slab.length * mean;
+    float weight_a = a.a * exp(-slab.length_mm * (mean * (0.5 - gauss_point) + slope * bend));
+    float weight_b = b.a * exp(-slab.length_mm * (mean * (0.5 + gauss_point) + slope * bend));
+    state.depth += slab.length_mm * mean;
     float transmittance = exp(-state.depth);
     float share = weight_b / max(weight_a + weight_b, 1e-30);
     state.colour += (state.transmittance - transmittance) * mix(a.rgb, b.rgb, share);

@@ -82,10 +82,10 @@ float refined(Slab slab, float value, float root, float from) {
 bool take_slab(inout State state, Slab slab) {
     vec4 cubic = cell_cubic(slab);
     // Both sides of a face must see one value there, or a root could fall between two roundings of it.
-    float begin_s = slab.s - 0.5 * slab.length;
-    cubic.x = abs(begin_s - state.end) <= 1e-4 * slab.length ? state.last : cubic.x;
+    float begin_s = slab.s - 0.5 * slab.length_mm;
+    cubic.x = abs(begin_s - state.end) <= 1e-4 * slab.length_mm ? state.last : cubic.x;
     state.last = cubic.w;
-    state.end = begin_s + slab.length;
+    state.end = begin_s + slab.length_mm;
     float least = min(min(cubic.x, cubic.y), min(cubic.z, cubic.w));
     float most = max(max(cubic.x, cubic.y), max(cubic.z, cubic.w));
     bool crosses = false;
@@ -110,10 +110,10 @@ bool take_slab(inout State state, Slab slab) {
 #endif
             vec3 local = slab.centre + (exact - 0.5) * slab.extent;
             vec4 surface_colour = u_iso_colour[surface];
-            vec3 lit = lit_by_eye(surface_colour.rgb, local, slab.extent / slab.length);
+            vec3 lit = lit_by_eye(surface_colour.rgb, local, slab.extent / slab.length_mm);
             state.colour += state.transmittance * surface_colour.a * lit;
             state.transmittance *= 1.0 - surface_colour.a;
-            state.s = min(state.s, begin_s + exact * slab.length);
+            state.s = min(state.s, begin_s + exact * slab.length_mm);
             from = root + 1e-5;
             crosses = state.transmittance > u_transmittance_limit;
         }

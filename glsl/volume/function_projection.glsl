@@ -6,7 +6,7 @@ uniform vec2 u_intensity;       // intensity without and share of brightness tur
 
 struct State {
     float value;
-    float length;  // [mm] that counted
+    float length_mm;  // that counted
 };
 
 State begin() {
@@ -50,7 +50,7 @@ void add(inout State state, float value, float length_mm) {
     const bool counts = true;
 #endif
     state.value += counts ? value * length_mm : 0.0;
-    state.length += counts ? length_mm : 0.0;
+    state.length_mm += counts ? length_mm : 0.0;
 #endif
 }
 
@@ -63,13 +63,13 @@ bool take_slab(inout State state, Slab slab) {
     const bool counts = true;
 #endif
     state.value = counts ? FURTHER(state.value, value) : state.value;
-    state.length += counts ? slab.length : 0.0;
+    state.length_mm += counts ? slab.length_mm : 0.0;
 #elif SCHEME == MIDPOINT
-    add(state, sample_volume(to_sample(slab.centre)), slab.length);
+    add(state, sample_volume(to_sample(slab.centre)), slab.length_mm);
 #else
     // Two Gauss points are exact for cubics, and along a ray a trilinear cell is one (spec: accuracy F15).
-    add(state, sample_volume(to_sample(slab.centre - gauss_point * slab.extent)), 0.5 * slab.length);
-    add(state, sample_volume(to_sample(slab.centre + gauss_point * slab.extent)), 0.5 * slab.length);
+    add(state, sample_volume(to_sample(slab.centre - gauss_point * slab.extent)), 0.5 * slab.length_mm);
+    add(state, sample_volume(to_sample(slab.centre + gauss_point * slab.extent)), 0.5 * slab.length_mm);
 #endif
     return false;
 }
@@ -81,11 +81,11 @@ vec4 finish(State state) {
     return vec4(vec3(mix(intensity, u_intensity.x - intensity, u_intensity.y)), 1.0);
 #else
 #if PROJECTION == 2
-    float value = state.value / max(state.length, 1e-30);
+    float value = state.value / max(state.length_mm, 1e-30);
 #else
     float value = state.value;
 #endif
     vec4 c = classify(value);
-    return state.length > 0.0 ? vec4(c.rgb * c.a, c.a) : vec4(0.0);
+    return state.length_mm > 0.0 ? vec4(c.rgb * c.a, c.a) : vec4(0.0);
 #endif
 }

@@ -40,7 +40,7 @@ void march(Ray ray, vec2 interval, float offset, inout State state) {
             Run run = run_from(leaper, float(end) + 0.5);
             bool goes_on = run.kind == kind;
             bool begins = kind == run_empty;
-            end = goes_on || begins ? min(end + 1 + int(min(run.length, float(count))), last) : end;
+            end = goes_on || begins ? min(end + 1 + int(min(run.extent, float(count))), last) : end;
             k = goes_on && begins ? end : k;
             kind = begins ? run.kind : kind;
             leaping = (goes_on || begins) && end < last;

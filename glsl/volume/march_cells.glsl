@@ -80,7 +80,7 @@ void march(Ray ray, vec2 interval, float offset, inout State state) {
             // A cell belongs to the brick of its middle, whose border covers all of its corners.
             float middle = 0.5 * (walk.t + cell_end(walk, length_mm));
             Run run = run_from(leaper, middle);
-            end = middle + run.length;
+            end = middle + run.extent;
             if (run.kind != run_empty) {
                 break;
             }

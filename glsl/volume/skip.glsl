@@ -17,7 +17,7 @@ struct Leaper {
 };
 
 struct Run {
-    float length;  // from the place asked for to the end of the run, in units of the march
+    float extent;  // from the place asked for to the end of the run, in units of the march
     uint kind;
 };
 

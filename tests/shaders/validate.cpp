@@ -12,7 +12,10 @@
 #include <sstream>
 #include <stdexcept>
 
+#include <nlohmann/json.hpp>
+
 #include "effects/register_all.h"
+#include "engine/core/params_json.h"
 #include "tests/io/temp_folder.h"
 
 namespace viscera::test {
@@ -81,6 +84,29 @@ void collect_faults(const std::string& output, const std::vector<StageFile>& sta
     }
 }
 
+/// Parameters that bring in shader code which the defaults leave out.
+struct ParameterSet {
+    std::string effect;
+    std::string parameters;  ///< JSON
+};
+
+std::vector<ParameterSet> parameter_sets() {
+    const auto cast = [](const std::string& parameters) {
+        return ParameterSet{"volume.ray_cast", R"({"volume": {"host": "host"}, )" + parameters + "}"};
+    };
+    return {
+        cast(R"("transfer_function": {"file": "any.json"})"),
+        cast(R"("shading": {"enabled": true, "lights": [{"direction": [0, 0, 1]}], "two_sided": false})"),
+        cast(R"("shading": {"enabled": true, "lights": [{"position_mm": [0, 0, 1]}, {}],
+                "light_volume": {"ambient_occlusion": 1}},
+                "transfer_function": {"gradient": [{"gradient": 1, "factor": 1}], "interpolate": true})"),
+        cast(R"("labels": {"host": "labels", "segments": [{"id": 1, "points": [{"value": 0}]}]},
+                "overlay": {"host": "overlay"}, "transfer_function": {"interpolate": true},
+                "clip_planes": [{}, {}, {}])"),
+        cast(R"("labels": {"host": "labels"}, "shading": {"light_volume": {"ambient_occlusion": 1}})"),
+    };
+}
+
 }  // namespace
 
 std::optional<std::filesystem::path> find_validator() {
@@ -101,6 +127,18 @@ std::vector<ProgramDesc> all_programs() {
     std::vector<ProgramDesc> programs{{"common/fullscreen.vert", "common/present.frag", {}}};
     for (const Registry::Entry& entry : registry.entries()) {
         const std::unique_ptr<Effect> effect = entry.make();
+        const auto own = effect->programs();
+        programs.insert(programs.end(), own.begin(), own.end());
+    }
+    for (const ParameterSet& set : parameter_sets()) {
+        const std::unique_ptr<Effect> effect = registry.find(set.effect)->make();
+        std::vector<JsonFault> faults;
+        read_params(
+            nlohmann::json::parse(set.parameters), "", "", [&](ParamVisitor& v) { effect->visit(v); },
+            faults);
+        if (!faults.empty()) {
+            throw std::runtime_error(set.effect + faults.front().pointer + ": " + faults.front().message);
+        }
         const auto own = effect->programs();
         programs.insert(programs.end(), own.begin(), own.end());
     }
