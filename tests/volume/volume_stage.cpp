@@ -173,6 +173,10 @@ reference::Ray Shot::ray(int x, int y) const {
     return reference::pixel_ray(view, x, y, image.width, image.height);
 }
 
+double Shot::along(const reference::Ray& ray, double depth_mm) const {
+    return depth_mm / glm::dot(ray.direction, view.forward);
+}
+
 bool same_bits(const Shot& a, const Shot& b) {
     return a.image.width == b.image.width && a.image.height == b.image.height && a.image.data == b.image.data;
 }

@@ -67,6 +67,8 @@ struct Shot {
 
     [[nodiscard]] glm::dvec4 at(int x, int y) const;
     [[nodiscard]] reference::Ray ray(int x, int y) const;
+    /// Where a ray passes a plane `depth_mm` in front of the eye, such as the near plane [mm].
+    [[nodiscard]] double along(const reference::Ray& ray, double depth_mm) const;
 };
 [[nodiscard]] bool same_bits(const Shot& a, const Shot& b);
 
