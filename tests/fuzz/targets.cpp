@@ -267,19 +267,6 @@ std::vector<std::string> shader_seeds() {
     return {seed};
 }
 
-constexpr std::array<Target, 12> all{{{"scene", run_scene, scene_seeds},
-                                      {"gltf", run_gltf, gltf_seeds},
-                                      {"vtp", run_vtp, vtp_seeds},
-                                      {"ply", run_ply, ply_seeds},
-                                      {"obj", run_obj, obj_seeds},
-                                      {"stl", run_stl, stl_seeds},
-                                      {"centreline", run_centreline, centreline_seeds},
-                                      {"exr", run_exr, exr_seeds},
-                                      {"png", run_png, png_seeds},
-                                      {"transfer_function", run_transfer_function, transfer_function_seeds},
-                                      {"shader", run_shader, shader_seeds},
-                                      {"volume", run_volume, volume_seeds}}};
-
 std::vector<std::string> volume_seeds() {
     const std::string shorts = test::bytes_of(test::ramp<std::int16_t>());
     const std::string nifti = test::Nifti(4, 16).bytes + shorts;
@@ -301,6 +288,19 @@ std::vector<std::string> volume_seeds() {
     }
     return seeds;
 }
+
+constexpr std::array<Target, 12> all{{{"scene", run_scene, scene_seeds},
+                                      {"gltf", run_gltf, gltf_seeds},
+                                      {"vtp", run_vtp, vtp_seeds},
+                                      {"ply", run_ply, ply_seeds},
+                                      {"obj", run_obj, obj_seeds},
+                                      {"stl", run_stl, stl_seeds},
+                                      {"centreline", run_centreline, centreline_seeds},
+                                      {"exr", run_exr, exr_seeds},
+                                      {"png", run_png, png_seeds},
+                                      {"transfer_function", run_transfer_function, transfer_function_seeds},
+                                      {"shader", run_shader, shader_seeds},
+                                      {"volume", run_volume, volume_seeds}}};
 
 }  // namespace
 
