@@ -42,6 +42,9 @@ void validate_clips(std::span<const ClipPlane> planes) {
 
 ClippedBox clipped_box(const glm::dvec3& min, const glm::dvec3& max, const glm::dmat4& local_to_world,
                        std::span<const ClipPlane> planes) {
+    if (planes.empty()) {
+        return {min, max};
+    }
     std::vector<glm::dvec4> walls;
     for (int a = 0; a < 3; ++a) {
         glm::dvec4 low(0.0);
