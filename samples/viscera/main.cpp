@@ -4,6 +4,7 @@
 
 #include "engine/core/error.h"
 #include "samples/viscera/commands.h"
+#include "samples/viscera/interruption.h"
 
 namespace {
 
@@ -33,7 +34,8 @@ int main(int argc, char** argv) {
         return run(argc, argv);
     } catch (const viscera::Error& error) {
         std::cerr << "viscera: " << error.what() << '\n';
-        return static_cast<int>(error.code());
+        return viscera::app::interrupted() ? viscera::app::interrupted_exit_code
+                                           : static_cast<int>(error.code());
     } catch (const std::bad_alloc&) {
         std::cerr << "viscera: out of memory\n";
         return static_cast<int>(viscera::ErrorCode::limit);

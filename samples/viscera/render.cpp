@@ -1,5 +1,6 @@
 #include <charconv>
 #include <chrono>
+#include <cmath>
 #include <fstream>
 #include <iomanip>
 #include <iostream>
@@ -12,6 +13,7 @@
 #include "engine/runtime/frame_writer.h"
 #include "engine/runtime/renderer.h"
 #include "samples/viscera/commands.h"
+#include "samples/viscera/interruption.h"
 #include "samples/viscera/session.h"
 
 namespace viscera::app {
@@ -143,6 +145,14 @@ int render(const RenderArguments& arguments) {
     if (!arguments.glsl.empty()) {
         options.shaders = shader_reader_from_folder(arguments.glsl);
     }
+    catch_interrupts();
+    options.progress = [show = arguments.progress](std::string_view what, double fraction) {
+        if (show) {
+            std::cerr << "\r" << what << ' ' << std::lround(100.0 * fraction) << " %"
+                      << (fraction < 1.0 ? "" : "\n") << std::flush;
+        }
+        return !interrupted();
+    };
     Renderer renderer(context->proc_address(), registry, std::move(options));
     renderer.set_scene(std::move(scene));
 
@@ -169,7 +179,8 @@ int render(const RenderArguments& arguments) {
                            }
                        });
     renderer.set_dump(dump, [&](CapturedFrame&& frame) { writer.submit(std::move(frame)); });
-    for (std::uint64_t index = range.first; index < range.end; ++index) {
+    std::uint64_t index = range.first;
+    for (; index < range.end && !interrupted(); ++index) {
         Frame frame = sequence ? renderer.frame(index)
                                : renderer.still(arguments.time_s.value_or(renderer.scene().time_s));
         renderer.render(frame);
@@ -188,6 +199,11 @@ int render(const RenderArguments& arguments) {
         if (!file.flush()) {
             throw Error(ErrorCode::file, arguments.report.string(), "cannot write the report");
         }
+    }
+    if (index < range.end) {
+        throw Error(ErrorCode::usage, "render",
+                    "cancelled after " + std::to_string(index - range.first) + " of " +
+                        std::to_string(total) + " frames");
     }
     return 0;
 }
@@ -213,7 +229,7 @@ void add_render(CLI::App& app, int& exit_code) {
     command->add_option("--report", arguments->report, "writes what every pass and target did, as JSON");
     command->add_option("--glsl", arguments->glsl,
                         "reads shaders from this folder in place of those in the binary");
-    command->add_flag("--progress", arguments->progress, "counts frames on stderr");
+    command->add_flag("--progress", arguments->progress, "tells on stderr what is loaded, and counts frames");
     command->callback([arguments, &exit_code] { exit_code = render(*arguments); });
 }
 

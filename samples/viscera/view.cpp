@@ -1,6 +1,9 @@
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <iostream>
+#include <optional>
 
 #include "engine/context/window.h"
 #include "engine/core/error.h"
@@ -9,7 +12,10 @@
 #include "engine/runtime/renderer.h"
 #include "samples/viscera/camera_control.h"
 #include "samples/viscera/commands.h"
+#include "samples/viscera/interactive_rate.h"
 #include "samples/viscera/session.h"
+#include "samples/viscera/title_progress.h"
+#include "samples/viscera/window_hand.h"
 
 namespace viscera::app {
 namespace {
@@ -17,13 +23,14 @@ namespace {
 constexpr std::string_view help = R"(left drag           rotate
 middle, Shift+left  pan
 right drag, wheel   zoom
+L and left drag     window (sideways) and level (up, down) of volumes
 keypad 1, 3, 7      front, left, head
 space               stop and go on in time
 left, right         one frame back, on
 T                   time back to the scene's beginning
 Tab                 next target
 S, E                save the target as PNG, as EXR
-R                   reset the camera
+R                   reset the camera, window and level
 F                   read shaders again (with --glsl)
 H                   this help
 Esc                 quit
@@ -34,6 +41,8 @@ struct ViewArguments {
     ComputeArgument compute;
     std::filesystem::path folder = "out";
     std::filesystem::path glsl;
+    double frame_time_ms = SamplingRateOptions{}.target_ms;
+    bool full_quality = false;
     std::uint64_t frames = 0;  ///< ends after so many; 0: when the window is closed
 };
 
@@ -41,17 +50,29 @@ struct ViewArguments {
 class Viewer {
   public:
     Viewer(const ViewArguments& arguments, WindowContext& window, Renderer& renderer)
-        : arguments_(arguments), window_(window), renderer_(renderer), camera_(renderer.scene().camera) {
+        : arguments_(arguments),
+          window_(window),
+          renderer_(renderer),
+          camera_(renderer.scene().camera),
+          levels_(renderer) {
         window_.events.button = [this](MouseButton button, bool pressed, Modifiers modifiers) {
             press(button, pressed, modifiers);
         };
         window_.events.cursor = [this](double x, double y) { drag(x, y); };
         window_.events.scroll = [this](double, double y) { zoom(camera_, std::pow(1.1, y)); };
         window_.events.key = [this](int key, bool pressed, Modifiers) {
-            if (pressed) {
+            if (key == 'L') {
+                holds_l_ = pressed;
+            } else if (pressed) {
                 type(key);
             }
         };
+        const bool volumes = std::ranges::any_of(renderer.scene().passes, [](const ScenePass& pass) {
+            return pass.effect.starts_with("volume.");
+        });
+        if (volumes && !arguments.full_quality) {
+            rate_.emplace(arguments.frame_time_ms, window.proc_address());
+        }
         targets_.push_back(renderer.scene().outputs.front());
     }
 
@@ -70,13 +91,28 @@ class Viewer {
 
   private:
     using Clock = std::chrono::steady_clock;
-    enum class Hand { none, rotate, pan, zoom };
+    enum class Hand { none, rotate, pan, zoom, window };
 
     void draw() {
         const PixelSize size = window_.framebuffer_size();
         if (size.width < 1 || size.height < 1) {
             return;  // minimised
         }
+        Frame frame = make_frame(size);
+        if (rate_) {
+            frame.quality = rate_->begin(frame, levels_.revision());
+        }
+        const FrameReport& report = renderer_.render(frame);
+        if (rate_) {
+            rate_->end(report);
+        }
+        shows_full_ = frame.quality.full();
+        if (targets_.size() == 1) {
+            list_targets();
+        }
+    }
+
+    [[nodiscard]] Frame make_frame(PixelSize size) const {
         Frame frame{.width = size.width, .height = size.height, .time_s = time_s_};
         frame.eyes[0] = make_view(camera_, frame.aspect(), time_s_);
         frame.host_state = HostStatePolicy::host_resets;
@@ -84,10 +120,7 @@ class Viewer {
                          .output = targets_[target_],
                          .framebuffer = 0,
                          .viewport = {0, 0, size.width, size.height}};
-        renderer_.render(frame);
-        if (targets_.size() == 1) {
-            list_targets();
-        }
+        return frame;
     }
 
     /// Every target that lives can be looked at; what is looked at becomes an output.
@@ -104,6 +137,7 @@ class Viewer {
                 : button == MouseButton::right  ? Hand::zoom
                 : button == MouseButton::middle ? Hand::pan
                 : modifiers.shift               ? Hand::pan
+                : holds_l_                      ? Hand::window
                                                 : Hand::rotate;
         at_ = window_.cursor();
     }
@@ -120,6 +154,8 @@ class Viewer {
                 return pan(camera_, dx, dy);
             case Hand::zoom:
                 return zoom(camera_, std::exp(2.0 * dy));
+            case Hand::window:
+                return levels_.drag(dx, dy);
             case Hand::none:
                 return;
         }
@@ -148,7 +184,7 @@ class Viewer {
                 return;
             case 'R':
                 camera_ = renderer_.scene().camera;
-                return;
+                return levels_.reset();
             case 'S':
                 return save(".png");
             case 'E':
@@ -171,6 +207,9 @@ class Viewer {
     }
 
     void save(const std::string& extension) {
+        if (!shows_full_) {
+            renderer_.render(make_frame(window_.framebuffer_size()));
+        }
         std::filesystem::create_directories(arguments_.folder);
         const std::string& name = targets_[target_];
         const std::filesystem::path file =
@@ -188,6 +227,10 @@ class Viewer {
     WindowContext& window_;
     Renderer& renderer_;
     CameraParams camera_;
+    WindowHand levels_;
+    std::optional<InteractiveRate> rate_;
+    bool shows_full_ = true;
+    bool holds_l_ = false;
     double time_s_ = 0.0;
     bool running_ = true;
     Hand hand_ = Hand::none;
@@ -204,9 +247,17 @@ int view(const ViewArguments& arguments) {
         create_window({.width = scene.width, .height = scene.height, .title = "viscera: " + scene.name});
     const LogCallback log = stderr_log();
     name_renderer(window->info(), log);
-    Renderer renderer(window->proc_address(), registry, {.log = log, .compute = arguments.compute.value()});
+    TitleProgress progress(*window, "viscera: " + scene.name);
+    Renderer renderer(window->proc_address(), registry,
+                      {.log = log, .compute = arguments.compute.value(), .progress = std::ref(progress)});
     renderer.set_scene(std::move(scene));
-    Viewer(arguments, *window, renderer).run();
+    try {
+        Viewer(arguments, *window, renderer).run();
+    } catch (const Error&) {
+        if (!progress.cancelled()) {
+            throw;
+        }
+    }
     return 0;
 }
 
@@ -219,6 +270,10 @@ void add_view(CLI::App& app, int& exit_code) {
     arguments->compute.add_to(*command);
     command->add_option("-o,--output", arguments->folder, "folder for pictures saved with S and E");
     command->add_option("--glsl", arguments->glsl, "folder from which F reads shaders again");
+    command->add_option("--frame-time", arguments->frame_time_ms,
+                        "[ms] that a frame with volumes may take while something moves; step and resolution "
+                        "follow it");
+    command->add_flag("--full-quality", arguments->full_quality, "draws every frame in full");
     command->add_option("--frames", arguments->frames, "ends after so many frames");
     command->footer(std::string(help));
     command->callback([arguments, &exit_code] { exit_code = view(*arguments); });
