@@ -37,6 +37,9 @@ std::optional<PixelFormat> pixel_format(const TextureFormat& format) {
 Image read_texture(const Functions& gl, const Texture& texture) {
     Image image = make_image(texture.width(), texture.height(), readable_format(texture));
     set_tight_packing(gl);
+    // llvmpipe (Mesa 22.3) does not wait for what is still being drawn into a texture when a later draw that
+    // is also under way samples it.
+    gl.Finish();
     get_pixels(gl, texture, image.data.data());
     return image;
 }

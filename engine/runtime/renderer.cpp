@@ -175,6 +175,9 @@ class Renderer::Impl {
         }
         report_.cpu_ms = timer.milliseconds();
         if (!dump_names_.empty()) {
+            if (capabilities_.software) {
+                gl_->Finish();  // for the reason that gl::read_texture has
+            }
             capture_.start(report_, dump_names_, executor_);
         }
         return report_;
