@@ -20,7 +20,8 @@ namespace viscera::test {
 /// A renderer with every effect in an offscreen context of its own, and what it complained of.
 class Stage {
   public:
-    explicit Stage(Backend backend = Backend::osmesa, ShaderReader shaders = {})
+    explicit Stage(Backend backend = Backend::osmesa, ShaderReader shaders = {},
+                   ComputeUse compute = ComputeUse::automatic)
         : context_(create_context(backend, {.debug = true})) {
         register_all(registry_);
         RendererOptions options;
@@ -30,6 +31,7 @@ class Stage {
             }
         };
         options.shaders = std::move(shaders);
+        options.compute = compute;
         renderer_ = std::make_unique<Renderer>(context_->proc_address(), registry_, std::move(options));
     }
 
@@ -40,6 +42,7 @@ class Stage {
 
     void make_current() { context_->make_current(); }
     [[nodiscard]] Renderer& renderer() { return *renderer_; }
+    [[nodiscard]] const Context& context() const { return *context_; }
     [[nodiscard]] const std::vector<std::string>& complaints() const { return complaints_; }
 
     /// Takes a scene given as JSON. Paths stand against assets/scenes, as those of the scenes there do.
