@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <span>
@@ -27,7 +28,10 @@ struct ContextOptions {
         egl_device;      ///< index among the EGL devices; none: the first that works, hardware first
     bool debug = false;  ///< ask for a debug context (KHR_debug messages)
     bool require_hardware = false;  ///< refuse software renderers
-    int width = 1280;               ///< window [pixels], glfw only
+    /// Newest version asked for; where the driver has none, 3.3. Some drivers give just what is asked for,
+    /// and compute shaders come with 4.3.
+    std::array<int, 2> version{4, 3};
+    int width = 1280;  ///< window [pixels], glfw only
     int height = 720;
     bool visible = true;  ///< glfw only
     std::string title = "viscera";

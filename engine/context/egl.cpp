@@ -92,17 +92,23 @@ std::unique_ptr<EglContext> create_on(const EglApi& egl, EGLDisplay display, Bac
     if (egl.bind_api(EGL_OPENGL_API) != EGL_TRUE) {
         throw refuse("the driver knows OpenGL ES only: " + egl.last_error());
     }
-    const std::array<EGLint, 9> attributes{EGL_CONTEXT_MAJOR_VERSION,
-                                           3,
-                                           EGL_CONTEXT_MINOR_VERSION,
-                                           3,
-                                           EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                                           EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                                           EGL_CONTEXT_FLAGS_KHR,
-                                           options.debug ? EGL_CONTEXT_OPENGL_DEBUG_BIT_KHR : 0,
-                                           EGL_NONE};
-    const EGLContext context = egl.create_context(display, choose_config(egl, display, extensions),
-                                                  EGL_NO_CONTEXT, attributes.data());
+    const EGLConfig config = choose_config(egl, display, extensions);
+    EGLContext context = EGL_NO_CONTEXT;
+    for (const std::array<int, 2>& version : {options.version, {3, 3}}) {
+        const std::array<EGLint, 9> attributes{EGL_CONTEXT_MAJOR_VERSION,
+                                               version[0],
+                                               EGL_CONTEXT_MINOR_VERSION,
+                                               version[1],
+                                               EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                               EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                               EGL_CONTEXT_FLAGS_KHR,
+                                               options.debug ? EGL_CONTEXT_OPENGL_DEBUG_BIT_KHR : 0,
+                                               EGL_NONE};
+        context = egl.create_context(display, config, EGL_NO_CONTEXT, attributes.data());
+        if (context != EGL_NO_CONTEXT) {
+            break;
+        }
+    }
     if (context == EGL_NO_CONTEXT) {
         throw refuse("no OpenGL 3.3 core context: eglCreateContext failed with " + egl.last_error());
     }

@@ -91,13 +91,19 @@ class GlfwWindow final : public WindowContext {
     GlfwWindow(const GlfwApi& api, const ContextOptions& options) : api_(api) {
         CurrentSlot::release();  // GLX refuses to bind while another library's context is current
         api_.default_window_hints();
-        api_.window_hint(GLFW_CONTEXT_VERSION_MAJOR, 3);
-        api_.window_hint(GLFW_CONTEXT_VERSION_MINOR, 3);
         api_.window_hint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
         api_.window_hint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
         api_.window_hint(GLFW_OPENGL_DEBUG_CONTEXT, options.debug ? GLFW_TRUE : GLFW_FALSE);
         api_.window_hint(GLFW_VISIBLE, options.visible ? GLFW_TRUE : GLFW_FALSE);
-        window_ = api_.create_window(options.width, options.height, options.title.c_str(), nullptr, nullptr);
+        for (const std::array<int, 2>& version : {options.version, {3, 3}}) {
+            api_.window_hint(GLFW_CONTEXT_VERSION_MAJOR, version[0]);
+            api_.window_hint(GLFW_CONTEXT_VERSION_MINOR, version[1]);
+            window_ =
+                api_.create_window(options.width, options.height, options.title.c_str(), nullptr, nullptr);
+            if (window_ != nullptr) {
+                break;
+            }
+        }
         if (window_ == nullptr) {
             throw Error(ErrorCode::context, where,
                         "no window with OpenGL 3.3 core: " + api_.last_error() +
