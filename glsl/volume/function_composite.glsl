@@ -13,6 +13,21 @@ State begin() {
     return State(vec3(0.0), 0.0, 1.0);
 }
 
+#if SCHEME == PREINTEGRATED
+// What lies in a slab's front covers what lies behind it: how far the colour that comes out is off the mean along the
+// slab. For a colour that runs straight, by d, through an optical depth t it is d (1/t - 1/(exp(t) - 1) - 1/2); the root below
+// is within 1 % of that up to t = 6. Only where extinction is alike at both Gauss points do their colours say anything
+// about the slab: at the teeth of a function they do not. Without this, smooth functions came out of second order, up to
+// eight times as far off as by single samples.
+vec3 front_bias(float before, float behind, float extinction, float length_mm) {
+    vec4 a = classify(before);
+    vec4 b = classify(behind);
+    float alike = min(a.a, b.a) / max(max(a.a, b.a), max(extinction, 1e-30));
+    float t = extinction * length_mm;
+    return 1.7320508075688772 * alike * (b.rgb - a.rgb) * (-0.5 * t * inversesqrt(36.0 + 1.2 * t * t));
+}
+#endif
+
 bool take_slab(inout State state, Slab slab) {
 #if SCHEME == MIDPOINT
     vec4 c = material(slab.centre);
@@ -28,7 +43,8 @@ bool take_slab(inout State state, Slab slab) {
     float middle = 0.5 * (before + behind);
     float rise = 0.8660254037844386 * (behind - before);
     vec4 mean = slab_mean(middle - rise, middle + rise);
-    vec4 c = appearance(vec4(mean.rgb / max(mean.a, 1e-30), mean.a), slab.centre);
+    vec3 colour = mean.rgb / max(mean.a, 1e-30) + front_bias(before, behind, mean.a, slab.length_mm);
+    vec4 c = appearance(vec4(max(colour, vec3(0.0)), mean.a), slab.centre);
     state.depth += c.a * slab.length_mm;
     float transmittance = exp(-state.depth);
     state.colour += (state.transmittance - transmittance) * c.rgb;
