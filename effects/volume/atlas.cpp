@@ -7,7 +7,7 @@ namespace viscera::volume {
 namespace {
 
 constexpr std::array<std::string_view, 3> storage_names{"automatic", "texture_3d", "atlas"};
-constexpr int fine_side = 2048;
+constexpr int fine_side = 256;
 
 int divide_up(int n, int by) {
     return (n - 1) / by + 1;

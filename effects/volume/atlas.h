@@ -30,8 +30,8 @@ struct AtlasLayout {
 };
 
 /// A layout within the device's limits; none when a slice is too large or there are too many. Layers are at
-/// most 2048 texels wide and high where that suffices: single precision then places samples as finely as in a
-/// 3-D texture.
+/// most 256 texels wide and high where slices and their number allow it: single precision places samples the
+/// more finely the smaller layers are.
 [[nodiscard]] std::optional<AtlasLayout> lay_out(const glm::ivec3& dims, int max_side, int max_layers);
 
 }  // namespace viscera::volume

@@ -57,7 +57,8 @@ float linear_texel(vec3 place) {
 #endif
 
 // The voxel at or below a place along each axis, and the way from its centre to the next one's, in [0, 1].
-// The place is split, so that its product with the size is exact and the whole part costs the fraction no digits.
+// The place is split, so that its product with a size up to 8192 is exact and the whole part costs the fraction no
+// digits.
 struct Cell {
     vec3 low;
     vec3 a;
@@ -65,11 +66,13 @@ struct Cell {
 
 Cell cell_at(vec3 place) {
     vec3 size = vec3(volume_size());
-    vec3 coarse = floor(place * 4096.0) * (1.0 / 4096.0);
+    vec3 coarse = floor(place * 1024.0) * (1.0 / 1024.0);
     vec3 p = coarse * size - 0.5;
     vec3 rest = (place - coarse) * size;
     vec3 low = floor(p + rest);
-    return Cell(low, (p - low) + rest);
+    vec3 a = (p - low) + rest;
+    vec3 over = floor(a);  // where rounding took the sum to the next voxel
+    return Cell(low + over, a - over);
 }
 
 ivec3 inside_volume(ivec3 voxel) {
