@@ -16,14 +16,7 @@
 namespace viscera::volume {
 namespace {
 
-constexpr int brick_size = 4;
 constexpr int blue_noise_size = 32;
-
-/// accumulate and density compose by transfer functions of their own.
-RayFunction marched_as(RayFunction function) {
-    return function == RayFunction::accumulate || function == RayFunction::density ? RayFunction::composite
-                                                                                   : function;
-}
 
 RayFunction function_for(Technique technique) {
     switch (technique) {
@@ -83,88 +76,6 @@ std::vector<Port> RayCastEffect::ports() const {
     return ports;
 }
 
-std::span<const ProgramDesc> RayCastEffect::programs() const {
-    programs_.clear();
-    variants_.clear();
-    // What a file's preset asks for is known when the file is read.
-    const bool by_file = !params_.function && !params_.transfer_function.file.empty();
-    const RayFunction given = params_.function ? marched_as(*params_.function) : RayFunction::composite;
-    for (const RayFunction function : {RayFunction::composite, RayFunction::mip, RayFunction::minip,
-                                       RayFunction::average, RayFunction::xray, RayFunction::isosurface}) {
-        if (!by_file && function != given) {
-            continue;
-        }
-        for (const Skipping skipping : {Skipping::none, Skipping::empty, Skipping::adaptive}) {
-            if (skipping == Skipping::adaptive &&
-                (params_.sampling.tolerance == 0.0 || function != RayFunction::composite)) {
-                continue;
-            }
-            ProgramDesc program{"common/fullscreen.vert", "volume/ray_cast.frag", {}};
-            if (function == RayFunction::composite) {
-                program.defines.emplace_back("COMPOSITE");
-            } else if (function == RayFunction::isosurface) {
-                add_defines(params_.isosurface, params_.sampling.reconstruction.is_tricubic(), program.defines);
-            } else {
-                program.defines.push_back("PROJECTION " + std::to_string(static_cast<int>(function) - 1));
-                if (params_.threshold) {
-                    program.defines.emplace_back("THRESHOLD");
-                }
-            }
-            add_defines(params_.sampling, program.defines);
-            const std::vector<std::string> filter = params_.sampling.reconstruction.defines();
-            program.defines.insert(program.defines.end(), filter.begin(), filter.end());
-            if (params_.transfer_function.interpolate) {
-                program.defines.emplace_back("TRANSFER_LINEAR");
-            }
-            if (skipping != Skipping::none) {
-                program.defines.emplace_back("SKIP");
-            }
-            if (skipping == Skipping::adaptive) {
-                program.defines.emplace_back("ADAPTIVE");
-            }
-            if (params_.sampling.limits != Limits::analytic) {
-                program.defines.push_back("LIMITS " +
-                                          std::to_string(static_cast<int>(params_.sampling.limits)));
-            }
-            const std::vector<std::string> clip = clip_defines(params_.look.clip_planes);
-            program.defines.insert(program.defines.end(), clip.begin(), clip.end());
-            if (function != RayFunction::composite) {
-                programs_.push_back(std::move(program));
-                variants_.push_back({function, skipping});
-                continue;
-            }
-            for (const Look::Variant& look : Look::variants(params_.look, params_.transfer_function)) {
-                const std::vector<std::string> defines = Look::defines(params_.look, look);
-                programs_.push_back(program);
-                programs_.back().defines.insert(programs_.back().defines.end(), defines.begin(),
-                                                defines.end());
-                variants_.push_back({function, skipping, look});
-            }
-        }
-    }
-    // All of them again for what else may be in the picture, and as compute shaders.
-    const auto again = [&](bool Variant::*what, std::string_view define) {
-        const std::size_t count = programs_.size();
-        for (std::size_t i = 0; i < count; ++i) {
-            programs_.push_back(programs_[i]);
-            variants_.push_back(variants_[i]);
-            variants_.back().*what = true;
-            if (what == &Variant::compute) {
-                programs_.back() = {"", "", programs_[i].defines, "volume/ray_cast.comp"};
-            } else {
-                programs_.back().defines.emplace_back(define);
-            }
-        }
-    };
-    again(&Variant::surface, "SURFACE");
-    again(&Variant::background, "BACKGROUND");
-    if (params_.volume.storage != Storage::texture_3d) {
-        again(&Variant::atlas, "STORAGE_ATLAS");
-    }
-    again(&Variant::compute, "");
-    return programs_;
-}
-
 void RayCastEffect::find_crop() {
     const CropBox box = crop_box(params_.crop, source_->volume().grid.dims);
     box_min_ = box.low;
@@ -217,110 +128,6 @@ void RayCastEffect::make_table(const gl::Functions& gl, const TexelMap& stored_o
     if (params_.sampling.scheme == Scheme::preintegrated && !projects()) {
         slabs_.emplace(gl, tabulate_slabs(knots, range));
     }
-}
-
-/// Stored numbers that can change the picture; empty where every number can.
-std::vector<StoredRange> RayCastEffect::visible() const {
-    const Volume& volume = source_->volume();
-    const TexelMap map{volume.slope, volume.intercept};
-    const double a = map.texel_of(source_->statistics.min);
-    const double b = map.texel_of(source_->statistics.max);
-    const TexelRange all{std::min(a, b), std::max(a, b)};
-    const int entries = params_.transfer_function.entries;
-    std::vector<StoredRange> shown = stored_ranges(function_, map, all, entries);
-    if (!projects()) {
-        look_.widen(params_.look, function_, map, all, entries, shown);
-    }
-    const auto at_least = [&](double value) {
-        const double stored = map.texel_of(value);
-        const double slack = 1e-6 * (1.0 + std::abs(stored));
-        constexpr float far = std::numeric_limits<float>::infinity();
-        return volume.slope > 0.0 ? StoredRange{static_cast<float>(stored - slack), far}
-                                  : StoredRange{-far, static_cast<float>(stored + slack)};
-    };
-    switch (variant_.function) {
-        case RayFunction::composite:
-        case RayFunction::accumulate:
-        case RayFunction::density:
-            return shown;
-        case RayFunction::isosurface:
-            return stored_ranges(params_.isosurface, map);
-        case RayFunction::xray:
-            return {at_least(-1000.0)};
-        case RayFunction::average:
-            return params_.threshold ? std::vector{at_least(*params_.threshold)} : std::vector<StoredRange>{};
-        case RayFunction::mip:
-        case RayFunction::minip:
-            break;
-    }
-    // What is not seen may be left out of an extreme only when nothing that is seen is overruled by it.
-    const bool upwards = (variant_.function == RayFunction::mip) == (volume.slope > 0.0);
-    if (shown.empty()) {
-        return {{0.0F, -1.0F}};
-    }
-    if (shown.size() == 1 && (upwards ? std::isinf(shown[0].high) : std::isinf(shown[0].low))) {
-        return shown;
-    }
-    return {};
-}
-
-/// How much colour and opacity change from the least stored number up to each, for long slabs.
-SmoothRule RayCastEffect::smooth_rule() const {
-    const Volume& volume = source_->volume();
-    const TexelMap map{volume.slope, volume.intercept};
-    const double a = map.texel_of(source_->statistics.min);
-    const double b = map.texel_of(source_->statistics.max);
-    double diagonal_mm = 0.0;
-    for (int axis = 0; axis < 3; ++axis) {
-        diagonal_mm += glm::length(glm::dvec3(texture_to_world_[axis]));
-    }
-    return make_smooth_rule(extinction_knots(function_, map, {std::min(a, b), std::max(a, b)}),
-                            std::min(a, b), std::max(a, b), diagonal_mm, params_.sampling.tolerance);
-}
-
-/// Finds which bricks show anything; false when none does.
-bool RayCastEffect::find_bricks(Prepare& prepare) {
-    variant_.skipping = Skipping::none;
-    if (!params_.sampling.skip) {
-        return true;
-    }
-    const std::vector<StoredRange> ranges = visible();
-    if (ranges.empty() && projects()) {
-        return true;
-    }
-    // A cell or slab belongs to the brick of its middle; reconstruction needs voxels beyond.
-    const ReconstructionParams& filter = params_.sampling.reconstruction;
-    const int border =
-        static_cast<int>(std::ceil(reach(params_.sampling, lattice_) + filter.support_voxels()));
-    bricks_ = load_bricks(prepare.assets(), *sampled_, sampled_channel_, brick_size, border);
-    const std::uint64_t key = Hash().add(parameters_key_).add(bricks_.get()).add(bricks_->version).value();
-    // The rule knows of the transfer function alone.
-    const bool adaptive =
-        params_.sampling.tolerance > 0.0 && !projects() && !params_.look.used(variant_.look);
-    skip_map_.update(bricks_->grid, ranges, crop_, adaptive ? smooth_rule() : SmoothRule{}, key,
-                     filter.overshoot() + overshoot(params_.sampling));
-    if (skip_map_.occupancy() == 0.0) {
-        return false;
-    }
-    // Where nothing can be left out, looking for it only costs.
-    if (adaptive && skip_map_.smooth_share() > 0.0) {
-        variant_.skipping = Skipping::adaptive;
-    } else if (skip_map_.occupancy() < 0.98) {
-        variant_.skipping = Skipping::empty;
-    }
-    return true;
-}
-
-/// The part of a box, in texture coordinates, outside which nothing is drawn.
-Bounds RayCastEffect::seen_bounds(Bounds bounds) const {
-    // An X-ray shows the whole box: what absorbs nothing is let through.
-    if (variant_.skipping != Skipping::none && variant_.function != RayFunction::xray) {
-        const glm::vec3 bricks = glm::vec3(source_->volume().grid.dims) / static_cast<float>(brick_size);
-        const VoxelBox& occupied = skip_map_.occupied_box();
-        bounds.min = glm::max(bounds.min, glm::vec3(occupied.first) / bricks);
-        bounds.max = glm::min(bounds.max, glm::vec3(occupied.first + occupied.size) / bricks);
-    }
-    return bounds;
 }
 
 Work RayCastEffect::prepare(Prepare& prepare) {
@@ -403,11 +210,8 @@ void RayCastEffect::bind_blue_noise(const Pass& pass, const gl::Program& program
 }
 
 void RayCastEffect::draw(const Pass& pass) {
-    GpuVolume& gpu = *pass.assets().shared<GpuVolume>(
-        Hash().add(sampled_->key).add(sampled_channel_).add(params_.volume.storage).value(), [&] {
-            return std::make_shared<GpuVolume>(pass.gl(), *sampled_, sampled_channel_,
-                                               params_.volume.storage);
-        });
+    GpuVolume& gpu =
+        *load_gpu_volume(pass.assets(), pass.gl(), *sampled_, sampled_channel_, params_.volume.storage);
     gpu.update(*sampled_);
     variant_.atlas = gpu.is_atlas();
     const Volume& volume = source_->volume();

@@ -24,6 +24,7 @@ class RayCastEffect final : public Effect {
     void draw(const Pass& pass) override;
 
   private:
+    static constexpr int brick_size = 4;  ///< [voxels]
     /// `adaptive`: also takes long slabs where the transfer function hardly changes.
     enum class Skipping { none, empty, adaptive };
     /// What the programs differ in besides the parameters.

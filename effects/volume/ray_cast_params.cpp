@@ -14,6 +14,11 @@ std::span<const std::string_view> choice_names(RayFunction) {
     return function_names;
 }
 
+RayFunction marched_as(RayFunction function) {
+    return function == RayFunction::accumulate || function == RayFunction::density ? RayFunction::composite
+                                                                                   : function;
+}
+
 void CropParams::visit(ParamVisitor& v) {
     v.field({.name = "first", .doc = "First voxel that is shown.", .unit = "voxel", .min = 0.0}, first);
     v.field({.name = "size", .doc = "Voxels that are shown; 0: all to the end.", .unit = "voxel", .min = 0.0},

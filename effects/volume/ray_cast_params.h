@@ -15,6 +15,8 @@ namespace viscera::volume {
 
 enum class RayFunction { composite, mip, minip, average, xray, isosurface, accumulate, density };
 [[nodiscard]] std::span<const std::string_view> choice_names(RayFunction function);
+/// accumulate and density are marched as composite, with transfer functions of their own.
+[[nodiscard]] RayFunction marched_as(RayFunction function);
 
 /// Part of the volume that is shown [voxels], a box; size 0 of an axis: all of it.
 struct CropParams {

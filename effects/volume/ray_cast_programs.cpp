@@ -1,0 +1,89 @@
+#include "effects/volume/ray_cast_effect.h"
+
+// Which programs the parameters ask for: one for each thing that only the data or the frame decide.
+namespace viscera::volume {
+
+std::span<const ProgramDesc> RayCastEffect::programs() const {
+    programs_.clear();
+    variants_.clear();
+    // What a file's preset asks for is known when the file is read.
+    const bool by_file = !params_.function && !params_.transfer_function.file.empty();
+    const RayFunction given = params_.function ? marched_as(*params_.function) : RayFunction::composite;
+    for (const RayFunction function : {RayFunction::composite, RayFunction::mip, RayFunction::minip,
+                                       RayFunction::average, RayFunction::xray, RayFunction::isosurface}) {
+        if (!by_file && function != given) {
+            continue;
+        }
+        for (const Skipping skipping : {Skipping::none, Skipping::empty, Skipping::adaptive}) {
+            if (skipping == Skipping::adaptive &&
+                (params_.sampling.tolerance == 0.0 || function != RayFunction::composite)) {
+                continue;
+            }
+            ProgramDesc program{"common/fullscreen.vert", "volume/ray_cast.frag", {}};
+            if (function == RayFunction::composite) {
+                program.defines.emplace_back("COMPOSITE");
+            } else if (function == RayFunction::isosurface) {
+                add_defines(params_.isosurface, params_.sampling.reconstruction.is_tricubic(),
+                            program.defines);
+            } else {
+                program.defines.push_back("PROJECTION " + std::to_string(static_cast<int>(function) - 1));
+                if (params_.threshold) {
+                    program.defines.emplace_back("THRESHOLD");
+                }
+            }
+            add_defines(params_.sampling, program.defines);
+            const std::vector<std::string> filter = params_.sampling.reconstruction.defines();
+            program.defines.insert(program.defines.end(), filter.begin(), filter.end());
+            if (params_.transfer_function.interpolate) {
+                program.defines.emplace_back("TRANSFER_LINEAR");
+            }
+            if (skipping != Skipping::none) {
+                program.defines.emplace_back("SKIP");
+            }
+            if (skipping == Skipping::adaptive) {
+                program.defines.emplace_back("ADAPTIVE");
+            }
+            if (params_.sampling.limits != Limits::analytic) {
+                program.defines.push_back("LIMITS " +
+                                          std::to_string(static_cast<int>(params_.sampling.limits)));
+            }
+            const std::vector<std::string> clip = clip_defines(params_.look.clip_planes);
+            program.defines.insert(program.defines.end(), clip.begin(), clip.end());
+            if (function != RayFunction::composite) {
+                programs_.push_back(std::move(program));
+                variants_.push_back({function, skipping});
+                continue;
+            }
+            for (const Look::Variant& look : Look::variants(params_.look, params_.transfer_function)) {
+                const std::vector<std::string> defines = Look::defines(params_.look, look);
+                programs_.push_back(program);
+                programs_.back().defines.insert(programs_.back().defines.end(), defines.begin(),
+                                                defines.end());
+                variants_.push_back({function, skipping, look});
+            }
+        }
+    }
+    // All of them again for what else may be in the picture, and as compute shaders.
+    const auto again = [&](bool Variant::*what, std::string_view define) {
+        const std::size_t count = programs_.size();
+        for (std::size_t i = 0; i < count; ++i) {
+            programs_.push_back(programs_[i]);
+            variants_.push_back(variants_[i]);
+            variants_.back().*what = true;
+            if (what == &Variant::compute) {
+                programs_.back() = {"", "", programs_[i].defines, "volume/ray_cast.comp"};
+            } else {
+                programs_.back().defines.emplace_back(define);
+            }
+        }
+    };
+    again(&Variant::surface, "SURFACE");
+    again(&Variant::background, "BACKGROUND");
+    if (params_.volume.storage != Storage::texture_3d) {
+        again(&Variant::atlas, "STORAGE_ATLAS");
+    }
+    again(&Variant::compute, "");
+    return programs_;
+}
+
+}  // namespace viscera::volume

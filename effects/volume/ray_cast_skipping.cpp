@@ -1,0 +1,115 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "effects/volume/ray_cast_effect.h"
+#include "engine/core/hash.h"
+
+// What of the volume need not be looked at: which values can be seen, and thus which bricks.
+namespace viscera::volume {
+
+/// Stored numbers that can change the picture; empty where every number can.
+std::vector<StoredRange> RayCastEffect::visible() const {
+    const Volume& volume = source_->volume();
+    const TexelMap map{volume.slope, volume.intercept};
+    const double a = map.texel_of(source_->statistics.min);
+    const double b = map.texel_of(source_->statistics.max);
+    const TexelRange all{std::min(a, b), std::max(a, b)};
+    const int entries = params_.transfer_function.entries;
+    std::vector<StoredRange> shown = stored_ranges(function_, map, all, entries);
+    if (!projects()) {
+        look_.widen(params_.look, function_, map, all, entries, shown);
+    }
+    const auto at_least = [&](double value) {
+        const double stored = map.texel_of(value);
+        const double slack = 1e-6 * (1.0 + std::abs(stored));
+        constexpr float far = std::numeric_limits<float>::infinity();
+        return volume.slope > 0.0 ? StoredRange{static_cast<float>(stored - slack), far}
+                                  : StoredRange{-far, static_cast<float>(stored + slack)};
+    };
+    switch (variant_.function) {
+        case RayFunction::composite:
+        case RayFunction::accumulate:
+        case RayFunction::density:
+            return shown;
+        case RayFunction::isosurface:
+            return stored_ranges(params_.isosurface, map);
+        case RayFunction::xray:
+            return {at_least(-1000.0)};
+        case RayFunction::average:
+            return params_.threshold ? std::vector{at_least(*params_.threshold)} : std::vector<StoredRange>{};
+        case RayFunction::mip:
+        case RayFunction::minip:
+            break;
+    }
+    // What is not seen may be left out of an extreme only when nothing that is seen is overruled by it.
+    const bool upwards = (variant_.function == RayFunction::mip) == (volume.slope > 0.0);
+    if (shown.empty()) {
+        return {{0.0F, -1.0F}};
+    }
+    if (shown.size() == 1 && (upwards ? std::isinf(shown[0].high) : std::isinf(shown[0].low))) {
+        return shown;
+    }
+    return {};
+}
+
+/// How much colour and opacity change from the least stored number up to each, for long slabs.
+SmoothRule RayCastEffect::smooth_rule() const {
+    const Volume& volume = source_->volume();
+    const TexelMap map{volume.slope, volume.intercept};
+    const double a = map.texel_of(source_->statistics.min);
+    const double b = map.texel_of(source_->statistics.max);
+    double diagonal_mm = 0.0;
+    for (int axis = 0; axis < 3; ++axis) {
+        diagonal_mm += glm::length(glm::dvec3(texture_to_world_[axis]));
+    }
+    return make_smooth_rule(extinction_knots(function_, map, {std::min(a, b), std::max(a, b)}),
+                            std::min(a, b), std::max(a, b), diagonal_mm, params_.sampling.tolerance);
+}
+
+/// Finds which bricks show anything; false when none does.
+bool RayCastEffect::find_bricks(Prepare& prepare) {
+    variant_.skipping = Skipping::none;
+    if (!params_.sampling.skip) {
+        return true;
+    }
+    const std::vector<StoredRange> ranges = visible();
+    if (ranges.empty() && projects()) {
+        return true;
+    }
+    // A cell or slab belongs to the brick of its middle; reconstruction needs voxels beyond.
+    const ReconstructionParams& filter = params_.sampling.reconstruction;
+    const int border =
+        static_cast<int>(std::ceil(reach(params_.sampling, lattice_) + filter.support_voxels()));
+    bricks_ = load_bricks(prepare.assets(), *sampled_, sampled_channel_, brick_size, border);
+    const std::uint64_t key = Hash().add(parameters_key_).add(bricks_.get()).add(bricks_->version).value();
+    // The rule knows of the transfer function alone.
+    const bool adaptive =
+        params_.sampling.tolerance > 0.0 && !projects() && !params_.look.used(variant_.look);
+    skip_map_.update(bricks_->grid, ranges, crop_, adaptive ? smooth_rule() : SmoothRule{}, key,
+                     filter.overshoot() + overshoot(params_.sampling));
+    if (skip_map_.occupancy() == 0.0) {
+        return false;
+    }
+    // Where nothing can be left out, looking for it only costs.
+    if (adaptive && skip_map_.smooth_share() > 0.0) {
+        variant_.skipping = Skipping::adaptive;
+    } else if (skip_map_.occupancy() < 0.98) {
+        variant_.skipping = Skipping::empty;
+    }
+    return true;
+}
+
+/// The part of a box, in texture coordinates, outside which nothing is drawn.
+Bounds RayCastEffect::seen_bounds(Bounds bounds) const {
+    // An X-ray shows the whole box: what absorbs nothing is let through.
+    if (variant_.skipping != Skipping::none && variant_.function != RayFunction::xray) {
+        const glm::vec3 bricks = glm::vec3(source_->volume().grid.dims) / static_cast<float>(brick_size);
+        const VoxelBox& occupied = skip_map_.occupied_box();
+        bounds.min = glm::max(bounds.min, glm::vec3(occupied.first) / bricks);
+        bounds.max = glm::min(bounds.max, glm::vec3(occupied.first + occupied.size) / bricks);
+    }
+    return bounds;
+}
+
+}  // namespace viscera::volume
