@@ -31,3 +31,10 @@ picture reflux contrast.reflux 'Smoke that flows back into the aortic root: `con
 picture lao final 'Another C-arm position, AP' $scene --set /camera/primary_deg=0 --set /camera/secondary_deg=0 --set /passes/0/parameters/file=../images/thorax.exr
 picture thesis final 'The published tone curve, which jumps at half density' $scene --time 1.0 --set /passes/8/parameters/tone=thesis
 picture vessels final 'A bifurcation, from the scene for vessels of your own' assets/scenes/vessels.json
+picture head volume.colour 'CT of a head' assets/scenes/head.json
+picture mip volume.colour 'MR angiogram, maximum intensity' assets/scenes/mip.json
+picture isosurface volume.colour 'Skin and skull as surfaces, cut open' assets/scenes/isosurface.json
+picture labels volume.colour 'Segments, with a bleed' assets/scenes/labels.json
+picture xray volume.colour 'X-ray, exact line integrals' assets/scenes/xray.json
+picture window volume.colour 'Bone window of the same head, average along the rays' assets/scenes/head.json --set '/passes/0/parameters={"volume":{"file":"../volumes/head.mha"},"function":"average","transfer_function":{"window":{"width":1500,"level":0}}}'
+picture overlay volume.colour 'Blood flow as hue over the brain' assets/scenes/labels.json --set '/passes/0/parameters/overlay={"file":"../volumes/overlay.nrrd","strength":0.8}'

@@ -1,5 +1,5 @@
 // The whole of ray casting for one pixel, shared by the fragment and the compute path. What stands for each part is the
-// variant's: effects/volume/ray_cast_programs.h.
+// variant's: effects/volume/ray_cast_programs.cpp.
 #define MIDPOINT 0
 #define GAUSS 1
 #define PREINTEGRATED 2
