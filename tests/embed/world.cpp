@@ -1,5 +1,6 @@
 #include "tests/embed/world.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -45,6 +46,22 @@ Image gradient(int side, float low, float high) {
     return image;
 }
 
+/// A soft ball of 16^3 bytes, 40 mm wide, as MetaImage.
+std::string ball_mha() {
+    std::string text =
+        "ObjectType = Image\nNDims = 3\nDimSize = 16 16 16\nElementSpacing = 2.5 2.5 2.5\n"
+        "Offset = -18.75 -18.75 -18.75\nElementType = MET_UCHAR\nElementDataFile = LOCAL\n";
+    for (int z = 0; z < 16; ++z) {
+        for (int y = 0; y < 16; ++y) {
+            for (int x = 0; x < 16; ++x) {
+                const double r = std::hypot(x - 7.5, y - 7.5, z - 7.5);
+                text += static_cast<char>(std::clamp(30.0 * (8.0 - r), 0.0, 200.0));
+            }
+        }
+    }
+    return text;
+}
+
 constexpr const char* head = R"json({
   "version": 1, "resolution": [96, 80], "frames_per_second": 10,
   "camera": {"kind": "orthographic", "eye_mm": [0, -300, 0], "target_mm": [0, 0, 0], "up": [0, 0, 1], "height_mm": 60},
@@ -69,6 +86,7 @@ constexpr const char* head = R"json({
 
 World::World() {
     const auto tube = folder_.write("tube.obj", tube_obj());
+    (void)folder_.write("ball.mha", ball_mha());
     io::write_png(folder_ / "background.png", gradient(24, 0.4F, 0.9F));
     io::write_png(folder_ / "smoke_a.png", gradient(16, 0.1F, 0.8F));
     io::write_png(folder_ / "smoke_b.png", gradient(16, 0.9F, 0.2F));
@@ -120,11 +138,17 @@ Scene World::everything() const {
      "targets": {"main": "host.main"}},
     {"name": "blush", "effect": "filter.gaussian", "parameters": {"axis": "y", "sigma": 0.1},
      "targets": {"source": "painter.main", "blurred": "contrast.capillary"}},
+    {"name": "surface", "effect": "mesh.surface", "parameters": {"mesh": "tube.obj"}},
+    {"name": "entry", "effect": "volume.entry", "parameters": {"volume": {"file": "ball.mha"}}},
+    {"name": "exit", "effect": "volume.exit", "parameters": {"volume": {"file": "ball.mha"}}},
+    {"name": "cast", "effect": "volume.ray_cast",
+     "parameters": {"volume": {"file": "ball.mha"}, "sampling": {"limits": "two_pass"},
+       "transfer_function": {"points": [{"value": 10, "opacity": 0}, {"value": 200, "opacity": 0.05}]}}},
     {"name": "composite", "effect": "contrast.composite"}
   ],
   "targets": {"contrast.capillary": {"scale": 0.5}},
   "outputs": ["final", "contrast.distance_view", "contrast.mask", "contrast.reflux", "contrast.extravasate",
-              "alone.cloud", "alone.distance", "depth.main", "painter.main", "host.main"]
+              "alone.cloud", "alone.distance", "depth.main", "painter.main", "host.main", "volume.colour"]
 })json");
 }
 
