@@ -11,6 +11,7 @@
 #include "effects/picture/image_effect.h"
 #include "effects/volume/limits_effect.h"
 #include "effects/volume/ray_cast_effect.h"
+#include "effects/volume/slice_effect.h"
 
 namespace viscera {
 
@@ -46,6 +47,8 @@ void register_all(Registry& registry) {
     registry.add("volume.exit", "Where rays leave a volume, for volume.ray_cast.", [] {
         return std::make_unique<volume::LimitsEffect>(volume::LimitsEffect::Side::exit);
     });
+    registry.add("volume.slice", "A volume's values on a plane or a mesh that cuts it.",
+                 [] { return std::make_unique<volume::SliceEffect>(); });
     registry.add("mesh.surface", "Opaque meshes, with their depth.",
                  [] { return std::make_unique<mesh::SurfaceEffect>(); });
     registry.add("filter.gaussian", "One direction of a Gaussian blur.",

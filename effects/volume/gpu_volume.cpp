@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "engine/core/error.h"
+#include "engine/core/hash.h"
 
 namespace viscera::volume {
 namespace {
@@ -249,6 +250,13 @@ void GpuVolume::set(const gl::Program& program) const {
         program.set("u_volume_size", atlas_->dims);
         program.set("u_atlas_tiles", atlas_->tiles);
     }
+}
+
+std::shared_ptr<GpuVolume> load_gpu_volume(Assets& assets, const gl::Functions& gl, const Source& source,
+                                           int channel, Storage storage) {
+    return assets.shared<GpuVolume>(Hash().add(source.key).add(channel).add(storage).value(), [&] {
+        return std::make_shared<GpuVolume>(gl, source, channel, storage);
+    });
 }
 
 }  // namespace viscera::volume

@@ -63,4 +63,8 @@ class GpuVolume {
     std::uint64_t version_ = 0;
 };
 
+/// Shared by all passes that show the channel; made on first use, as it was then.
+[[nodiscard]] std::shared_ptr<GpuVolume> load_gpu_volume(Assets& assets, const gl::Functions& gl,
+                                                         const Source& source, int channel, Storage storage);
+
 }  // namespace viscera::volume

@@ -79,6 +79,19 @@ double signed_volume6(const MeshData& mesh) {
     return sum;
 }
 
+MeshData mesh_in_local(const AssetPath& file, const std::string& filter, std::optional<double> mm_per_unit,
+                       const PlacementParams& placement, const glm::dmat4& local_to_world, Log& log) {
+    MeshData mesh = io::merge(
+        io::load_meshes(file.path, {.scale_mm_per_unit = mm_per_unit, .name_filter = filter}, log));
+    const Bounds bounds = mesh.bounds();
+    const glm::dmat4 to_local = glm::inverse(local_to_world) *
+                                placement_matrix(placement, 0.5 * glm::dvec3(bounds.min + bounds.max));
+    for (glm::vec3& position : mesh.positions) {
+        position = to_local * glm::dvec4(position, 1.0);
+    }
+    return mesh;
+}
+
 LimitsEffect::LimitsEffect(Side side)
     : side_(side), programs_{{"volume/limits.vert", "volume/limits.frag", {}}} {
     if (side == Side::exit) {
@@ -113,16 +126,8 @@ void LimitsEffect::find_mesh(Prepare& prepare) {
         const CropBox box = crop_box(params_.crop, grid_.dims);
         mesh_ = box_mesh(box.low, box.high);
     } else {
-        mesh_ = io::merge(io::load_meshes(
-            params_.limits_mesh.path,
-            {.scale_mm_per_unit = params_.mm_per_unit, .name_filter = params_.mesh_filter}, prepare.log()));
-        const Bounds bounds = mesh_.bounds();
-        const glm::dmat4 to_local =
-            glm::inverse(local_to_world_) *
-            placement_matrix(params_.mesh_placement, 0.5 * glm::dvec3(bounds.min + bounds.max));
-        for (glm::vec3& position : mesh_.positions) {
-            position = to_local * glm::dvec4(position, 1.0);
-        }
+        mesh_ = mesh_in_local(params_.limits_mesh, params_.mesh_filter, params_.mm_per_unit,
+                              params_.mesh_placement, local_to_world_, prepare.log());
     }
     bounds_ = mesh_.bounds();
     inside_out_ = signed_volume6(mesh_) < 0.0;

@@ -27,6 +27,11 @@ struct LimitsParams {
 /// Six times the volume enclosed by a closed mesh; negative when its triangles face inwards.
 [[nodiscard]] double signed_volume6(const MeshData& mesh);
 
+/// Triangles of a file, placed in the world, in local coordinates. Throws Error(file).
+[[nodiscard]] MeshData mesh_in_local(const AssetPath& file, const std::string& filter,
+                                     std::optional<double> mm_per_unit, const PlacementParams& placement,
+                                     const glm::dmat4& local_to_world, Log& log);
+
 /// Draws where rays enter a volume, or leave it, as pictures of local coordinates: the faces of its box, or
 /// of a closed mesh. Of several faces behind one another the nearest entry and the farthest exit are kept.
 class LimitsEffect final : public Effect {

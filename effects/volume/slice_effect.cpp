@@ -1,0 +1,180 @@
+#include "effects/volume/slice_effect.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "effects/volume/limits_effect.h"
+#include "effects/volume/prefilter.h"
+#include "engine/core/error.h"
+#include "engine/core/hash.h"
+#include "engine/core/log.h"
+#include "engine/gl/mesh.h"
+#include "engine/runtime/pass.h"
+#include "engine/runtime/region.h"
+
+namespace viscera::volume {
+
+std::vector<Port> SliceEffect::ports() const {
+    std::vector<Port> ports{{.name = "colour",
+                             .access = Access::write,
+                             .target = "volume.slice",
+                             .doc = "Colour of the values, premultiplied by opacity: 1 where the volume is.",
+                             .format = PixelFormat::rgba16f,
+                             .overwrites = !in_camera()}};
+    if (in_camera()) {
+        ports.push_back({.name = "depth",
+                         .access = Access::write,
+                         .target = "volume.slice_depth",
+                         .doc = "Depth of the cut; 1 where there is none.",
+                         .format = PixelFormat::depth32f,
+                         .clear = {1.0F, 0.0F, 0.0F, 0.0F}});
+    }
+    return ports;
+}
+
+std::span<const ProgramDesc> SliceEffect::programs() const {
+    ProgramDesc program{in_camera() ? "volume/limits.vert" : "common/fullscreen.vert", "volume/slice.frag",
+                        params_.sampling.defines()};
+    program.defines.emplace_back("TRANSFER_LINEAR");
+    program.defines.push_back("SLAB " + std::to_string(static_cast<int>(params_.slab.function)));
+    if (in_camera()) {
+        program.defines.emplace_back("CAMERA");
+    }
+    programs_ = {program};
+    if (params_.volume.storage != Storage::texture_3d) {
+        programs_.push_back(std::move(program));
+        programs_.back().defines.emplace_back("STORAGE_ATLAS");
+    }
+    return programs_;
+}
+
+void SliceEffect::find_surface(Prepare& prepare) {
+    plane_ = slice_plane(params_.plane, texture_to_world_);
+    surface_ = {};
+    if (in_camera()) {
+        surface_ = params_.mesh.empty()
+                       ? cut_polygon(plane_, texture_to_world_)
+                       : mesh_in_local(params_.mesh, params_.mesh_filter, params_.mm_per_unit,
+                                       params_.mesh_placement, texture_to_world_, prepare.log());
+    }
+    bounds_ = surface_.bounds();
+    surface_key_ = Hash().add(parameters_key_).add(texture_to_world_).value();
+}
+
+Work SliceEffect::prepare(Prepare& prepare) {
+    source_ = load_source(prepare.assets(), params_.volume, prepare.frame());
+    if (!source_) {
+        return Work::idle("the host gives no volume of this name");
+    }
+    const bool coefficients = params_.sampling.uses_coefficients();
+    sampled_channel_ = coefficients ? 0 : params_.volume.channel;
+    sampled_ = coefficients ? load_coefficients(prepare.assets(), *source_, params_.volume.channel) : source_;
+    const VolumeGrid& grid = source_->volume().grid;
+    if (parameters_key_ != prepare.parameters_key() || !(grid_ == grid)) {
+        function_ = load_function(params_.transfer_function, prepare.assets());
+        texture_to_world_ = placed(grid, params_.volume.placement);
+        if (invertible(texture_to_world_)) {
+            find_surface(prepare);
+        }
+        grid_ = grid;
+        parameters_key_ = prepare.parameters_key();
+    }
+    if (!invertible(texture_to_world_)) {
+        prepare.log().fault("volume.singular", "the volume's placement is singular; it is not drawn");
+        return Work::idle("the volume's placement is singular");
+    }
+    const std::uint64_t key =
+        Hash().add(surface_key_).add(parameters_key_).add(source_->key).add(source_->version()).value();
+    if (!in_camera()) {
+        return Work::all(key);
+    }
+    if (surface_.indices.empty()) {
+        return Work::idle(params_.mesh.empty() ? "the plane misses the volume" : "the mesh has no triangles");
+    }
+    const View& view = prepare.frame().eye();
+    const PixelRect region =
+        project_bounds(bounds_, view.view_projection() * texture_to_world_, prepare.size("colour"));
+    if (region.empty()) {
+        return Work::idle("the slice lies outside the view");
+    }
+    return Work::in_region(region, "only where the slice can be seen",
+                           Hash().add(key).add(view.view).add(view.projection).value());
+}
+
+void SliceEffect::make_table(const gl::Functions& gl, const TexelMap& stored_of_texel) {
+    const Volume& volume = source_->volume();
+    const TexelMap map{volume.slope * stored_of_texel.scale, volume.value_of(stored_of_texel.offset)};
+    const VolumeStatistics& values = source_->statistics;
+    TransferFunction function = function_;
+    if (params_.transfer_function.empty()) {
+        function = make_window({values.max - values.min, 0.5 * (values.min + values.max)});
+    }
+    // A window is often narrow beside the volume's range, and constant beyond its ends.
+    double low = std::max(values.min, function.points.front().value);
+    double high = std::min(values.max, function.points.back().value);
+    if (!(low < high)) {
+        low = values.min;
+        high = values.max;
+    }
+    const double a = map.texel_of(low);
+    const double b = map.texel_of(high);
+    const TexelRange range{std::min(a, b), std::max(a, b)};
+    const int entries = params_.transfer_function.entries;
+    const ExtinctionKnots knots = extinction_knots(function, map, range);
+    ClassificationTable table = tabulate(knots, range, entries);
+    table_.emplace(gl::Texture::make_2d(gl, entries, 1, PixelFormat::rgba32f, "transfer function"));
+    table_->upload(std::as_bytes(std::span(table.entries)));
+    table_place_ = table.place;
+}
+
+void SliceEffect::set_plane(const Pass& pass, const gl::Program& program) const {
+    const glm::dmat4 to_local = glm::inverse(texture_to_world_);
+    const glm::dvec3 per_mm = to_local * glm::dvec4(plane_.normal(), 0.0);
+    program.set("u_slab_samples", slab_samples(params_.slab, per_mm, grid_.dims));
+    program.set("u_slab_extent", glm::vec3(per_mm * params_.slab.thickness_mm));
+    if (in_camera()) {
+        return;
+    }
+    const glm::dvec2 size(pass.size());
+    const double height = params_.height_mm > 0.0
+                              ? params_.height_mm
+                              : fitting_height_mm(plane_, texture_to_world_, size.x / size.y);
+    const std::array<glm::vec3, 3> point{
+        glm::vec3(to_local * glm::dvec4(plane_.centre_mm, 1.0)),
+        glm::vec3(to_local * glm::dvec4(plane_.right * (0.5 * height * size.x / size.y), 0.0)),
+        glm::vec3(to_local * glm::dvec4(plane_.up * (0.5 * height), 0.0))};
+    program.set("u_point", std::span<const glm::vec3>(point));
+    program.set("u_pixel", 2.0F / glm::vec2(pass.size()));
+    const glm::dvec4& b = params_.background;
+    program.set("u_background", glm::vec4(glm::dvec4(glm::dvec3(b) * b.a, b.a)));
+}
+
+void SliceEffect::draw(const Pass& pass) {
+    GpuVolume& gpu =
+        *load_gpu_volume(pass.assets(), pass.gl(), *sampled_, sampled_channel_, params_.volume.storage);
+    gpu.update(*sampled_);
+    const std::uint64_t table_key = Hash().add(parameters_key_).add(source_->version()).value();
+    if (table_key_ != table_key) {
+        make_table(pass.gl(), gpu.map());
+        table_key_ = table_key;
+    }
+    const gl::Program& program = pass.use(gpu.is_atlas() ? 1 : 0);
+    gpu.set(program);
+    pass.bind(program, "u_volume", gpu.texture(), params_.sampling.texture_filter());
+    pass.bind(program, "u_transfer", *table_, gl::Filter::nearest);
+    program.set("u_transfer_place", glm::vec2(table_place_));
+    set_plane(pass, program);
+    if (!in_camera()) {
+        pass.draw_fullscreen();
+        return;
+    }
+    const gl::Mesh& mesh = *pass.assets().shared<gl::Mesh>(
+        surface_key_, [&] { return std::make_shared<gl::Mesh>(pass.gl(), surface_); });
+    const View& view = pass.frame().eye();
+    program.set("u_to_clip", glm::mat4(view.view_projection() * texture_to_world_));
+    pass.raster(gl::depth_tested_state);
+    mesh.draw();
+}
+
+}  // namespace viscera::volume
