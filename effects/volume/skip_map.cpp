@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <filesystem>
 
 #include "engine/core/hash.h"
 
@@ -29,8 +30,9 @@ std::shared_ptr<Bricks> load_bricks(Assets& assets, const Source& source, int ch
         changed = source.live->changes_since(bricks->version, everything);
     }
     if (everything) {
-        bricks->grid =
-            summarise(volume, channel, size, border, empty, assets.progress("summarising " + volume.source));
+        bricks->grid = summarise(
+            volume, channel, size, border, empty,
+            assets.progress("summarising " + std::filesystem::path(volume.source).filename().string()));
     }
     for (const VoxelBox& box : changed) {
         resummarise(bricks->grid, volume, channel, empty, box);

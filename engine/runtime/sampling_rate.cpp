@@ -12,7 +12,7 @@ constexpr double lowest = 0.75;  // of the target: below, the share grows
 constexpr double highest = 1.1;  // above, it falls
 constexpr double aim = 0.9;
 constexpr double largest_growth = 2.0;
-constexpr double resolution_steps = 8.0;
+constexpr double resolution_steps = 16.0;
 
 bool is_time(double ms) {
     return std::isfinite(ms) && ms > 0.0;
@@ -32,10 +32,11 @@ double share_of(const Quality& quality) {
 
 Quality quality_for(double share, const Quality& minimum) {
     const double wanted = std::clamp(std::sqrt(share * minimum.step_factor), minimum.resolution, 1.0);
-    // A hair's breadth below an eighth is that eighth; where the step cannot make up for the rest, none is.
-    const double eighths =
+    // A hair's breadth below a sixteenth is that sixteenth; where the step cannot make up for the rest, none
+    // is.
+    const double sixteenths =
         std::max(std::floor(wanted * resolution_steps + 1e-9) / resolution_steps, minimum.resolution);
-    const double resolution = eighths * eighths >= share ? std::min(eighths, 1.0) : wanted;
+    const double resolution = sixteenths * sixteenths >= share ? std::min(sixteenths, 1.0) : wanted;
     return {.step_factor = std::clamp(resolution * resolution / share, 1.0, minimum.step_factor),
             .resolution = resolution};
 }

@@ -11,7 +11,7 @@ struct SamplingRateOptions {
     double target_ms = 33.0;  ///< time a frame may take while the user moves, > 0
     double delay_ms = 150.0;  ///< stillness after which quality returns, >= 0
     /// No frame is drawn worse than this.
-    Quality minimum{.step_factor = 3.0, .resolution = 0.5};
+    Quality minimum{.step_factor = 3.0, .resolution = 0.25};
 };
 
 /// What a host knows when it asks for the next frame's quality.
@@ -28,8 +28,8 @@ struct FrameObservation {
 [[nodiscard]] double share_of(const Quality& quality);
 
 /// The quality that takes this share of the samples, no worse than `minimum`. The step grows first, to
-/// minimum.step_factor; only then does the resolution shrink, in eighths, so that targets change their size
-/// rarely.
+/// minimum.step_factor; only then does the resolution shrink, in sixteenths, so that targets change their
+/// size rarely.
 [[nodiscard]] Quality quality_for(double share, const Quality& minimum);
 
 /// Chooses step and resolution so that frames come in time while the user moves and are drawn in full when
@@ -39,9 +39,9 @@ struct FrameObservation {
 /// frame out of line changes nothing. Within 0.75 to 1.1 of the target the quality stays as it is; above, the
 /// share of samples falls at once to what 0.9 of the target allows; below, it grows by the square root of
 /// what is missing. Still: after the delay the share doubles from frame to frame up to full quality. In
-/// either case it at most doubles from one frame to the next, so the way back from the default minimum takes
-/// four frames, the last of which alone costs half. It may fall by any factor, as happens when movement
-/// begins.
+/// either case it at most doubles from one frame to the next (resolution: at most 1.8 times), so the way back
+/// from the default minimum takes six frames, the last of which alone costs half. It may fall by any factor,
+/// as happens when movement begins.
 class SamplingRateManager {
   public:
     /// Throws Error(usage) for options out of range.

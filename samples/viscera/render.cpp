@@ -129,6 +129,7 @@ nlohmann::json context_json(const ContextInfo& info) {
 }
 
 int render(const RenderArguments& arguments) {
+    catch_interrupts();
     Scene scene = arguments.scene.load();
     const bool sequence = !arguments.frames.empty();
     if (sequence && arguments.time_s) {
@@ -145,7 +146,6 @@ int render(const RenderArguments& arguments) {
     if (!arguments.glsl.empty()) {
         options.shaders = shader_reader_from_folder(arguments.glsl);
     }
-    catch_interrupts();
     options.progress = [show = arguments.progress](std::string_view what, double fraction) {
         if (show) {
             std::cerr << "\r" << what << ' ' << std::lround(100.0 * fraction) << " %"

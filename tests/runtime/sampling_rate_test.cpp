@@ -131,7 +131,7 @@ TEST(SamplingRate, ReturnsToFullQualityBySmallSteps) {
         EXPECT_LE(share_of(scene.quality), 2.0 * share * 1.000001);
         share = share_of(scene.quality);
     }
-    EXPECT_LE(refined, 4);
+    EXPECT_LE(refined, 6);
     scene.frames(50, false);
     EXPECT_TRUE(scene.quality.full());
     EXPECT_EQ(scene.last_ms, 0.0) << "nothing is left to draw";
@@ -213,7 +213,9 @@ TEST(SamplingRate, SharesAreWhatQualitiesTake) {
     for (double share = share_of(default_minimum); share <= 1.0; share *= 1.01) {
         const Quality quality = quality_for(share, default_minimum);
         EXPECT_NEAR(share_of(quality), share, 1e-9);
-        EXPECT_EQ(quality.resolution * 8.0, std::round(quality.resolution * 8.0));
+        EXPECT_EQ(quality.resolution * 16.0, std::round(quality.resolution * 16.0));
+        EXPECT_LE(quality_for(std::min(1.0, 2.0 * share), default_minimum).resolution,
+                  1.8 * quality.resolution);
     }
     EXPECT_TRUE(quality_for(1.0, default_minimum).full());
 }
