@@ -27,7 +27,7 @@ ShaderTexts counting() {
          wrapped("volume/function_projection.glsl", function,
                  "float path_mm = 0.0;\n"
                  "bool take_slab(inout State state, Slab slab) {\n"
-                 "    path_mm += slab.length;\n"
+                 "    path_mm += slab.length_mm;\n"
                  "    return plain_take_slab(state, slab);\n"
                  "}\n"
                  "vec4 finish(State state) { return vec4(float(samples_taken), path_mm, 0.0, 1.0); }\n")}};

@@ -1,0 +1,308 @@
+// Skipping changes no bit of the picture, whatever is made of the ray; it leaves out what an oracle would;
+// and it is never stale.
+
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "engine/io/volume.h"
+#include "tests/volume/mixed_scene.h"
+#include "tests/volume/volume_stage.h"
+
+namespace viscera::test {
+namespace {
+
+/// Shows 100 and more.
+nlohmann::json vessels_shown() {
+    return {{"points",
+             {{{"value", 60}, {"colour", {0.8, 0.2, 0.1}}, {"opacity", 0.0}},
+              {{"value", 130}, {"colour", {0.9, 0.6, 0.4}}, {"opacity", 0.2}},
+              {{"value", 200}, {"colour", {1.0, 1.0, 0.9}}, {"opacity", 0.5}}}}};
+}
+
+/// Casts with and without skipping; the pictures' bits are compared.
+class Skipping : public testing::Test {
+  protected:
+    /// Number of pixels in which anything is to be seen.
+    static int lit(const Shot& shot) {
+        int count = 0;
+        for (int y = 0; y < shot.image.height; ++y) {
+            for (int x = 0; x < shot.image.width; ++x) {
+                const glm::dvec4 c = shot.at(x, y);
+                count += c != shot.at(0, 0) ? 1 : 0;
+            }
+        }
+        return count;
+    }
+    void expect_same(nlohmann::json parameters, const Look& look, int least_lit = 100) {
+        parameters["sampling"]["skip"] = false;
+        const Shot whole = stage_.cast(vessels_, parameters, look, size_);
+        parameters["sampling"]["skip"] = true;
+        const Shot skipped = stage_.cast(vessels_, parameters, look, size_);
+        EXPECT_TRUE(same_bits(whole, skipped))
+            << parameters.dump() << " off by " << difference(whole.image, skipped.image).max << " in "
+            << difference(whole.image, skipped.image).above << " pixels";
+        EXPECT_GE(lit(whole), least_lit) << parameters.dump();
+    }
+    static nlohmann::json parameters(std::string_view function, std::string_view scheme,
+                                     std::string_view filter) {
+        nlohmann::json p{{"function", function},
+                         {"transfer_function", vessels_shown()},
+                         {"sampling", {{"scheme", scheme}, {"filter", filter}}}};
+        if (function == "isosurface") {
+            p["isosurface"] = {{"values", {{{"value", 90}, {"opacity", 0.6}}}}};
+        }
+        if (function == "average") {
+            p["threshold"] = 40;
+        }
+        return p;
+    }
+
+    VolumeStage stage_;
+    LiveVolume vessels_{vessel_volume(40, 2.0, 9)};
+    Look look_{.eye_mm = {150, -190, 90}, .fov_deg = 24};
+    glm::ivec2 size_{64};
+};
+
+TEST_F(Skipping, ChangesNoBitUnderAnyFunctionAndScheme) {
+    for (const char* scheme : {"midpoint", "gauss", "preintegrated", "cell"}) {
+        for (const char* function : {"composite", "mip", "minip", "average", "xray"}) {
+            if (std::string_view(scheme) == "preintegrated" && std::string_view(function) != "composite") {
+                continue;  // the same as midpoint or gauss
+            }
+            expect_same(parameters(function, scheme, "linear"), look_,
+                        std::string_view(function) == "minip" ? 0 : 100);
+        }
+    }
+    expect_same(parameters("isosurface", "gauss", "linear"), look_);
+}
+
+TEST_F(Skipping, ChangesNoBitUnderAnyFilter) {
+    for (const char* filter :
+         {"nearest", "linear_fp32", "bspline", "bspline_fp32", "catmull_rom", "catmull_rom_fp32"}) {
+        expect_same(parameters("composite", "midpoint", filter), look_);
+    }
+    expect_same(parameters("isosurface", "gauss", "linear_fp32"), look_);
+    expect_same(parameters("composite", "cell", "catmull_rom"), look_);
+    nlohmann::json raw = parameters("mip", "gauss", "bspline");
+    raw["sampling"]["prefilter"] = false;
+    expect_same(raw, look_);
+}
+
+TEST_F(Skipping, ChangesNoBitForJitterLongStepsCropAndPlacement) {
+    nlohmann::json p = parameters("composite", "gauss", "linear");
+    for (const double step : {0.1, 0.77, 3.0}) {
+        p["sampling"]["step"] = step;
+        expect_same(p, look_);
+    }
+    p["sampling"]["step"] = 0.5;
+    p["sampling"]["jitter"] = "hash";
+    expect_same(p, look_);
+    p["sampling"]["jitter"] = "none";
+    p["crop"] = {{"first", {3.3, 0, 7}}, {"size", {30, 21.5, 0}}};
+    expect_same(p, look_, 50);
+    p["volume"] = {
+        {"placement", {{"rotate_deg", {20, -70, 130}}, {"scale", {1.4, -0.6, 1}}, {"move_mm", {3, 4, -5}}}}};
+    expect_same(p, look_, 50);
+    p.erase("crop");
+    p["sampling"]["step"] = 2.1;
+    expect_same(p, look_);
+}
+
+TEST_F(Skipping, ChangesNoBitFromAnyOfThirtyPlaces) {
+    std::mt19937 random(17);
+    std::uniform_real_distribution<double> unit(-1.0, 1.0);
+    for (const char* scheme : {"gauss", "cell"}) {
+        for (int i = 0; i < 30; ++i) {
+            // Some inside of the volume, some along its axes.
+            Look look{.eye_mm = 170.0 * glm::dvec3(unit(random), unit(random), unit(random)),
+                      .target_mm = 15.0 * glm::dvec3(unit(random), unit(random), unit(random)),
+                      .fov_deg = 35};
+            if (i % 5 == 0) {
+                look.eye_mm[i / 5 % 2] = look.target_mm[i / 5 % 2];
+            }
+            look.orthographic_mm = i % 3 == 0 ? 90.0 : 0.0;
+            expect_same(parameters("composite", scheme, "linear"), look, 0);
+        }
+    }
+}
+
+TEST_F(Skipping, FindsVesselsOfOneVoxel) {
+    // A single bright voxel in the dark, wherever it lies beside the edges of bricks.
+    for (const glm::ivec3 at : {glm::ivec3(0), glm::ivec3(3, 4, 7), glm::ivec3(8, 39, 20), glm::ivec3(39)}) {
+        Volume dot = vessels_.volume();
+        std::ranges::fill(dot.voxels, std::byte{0});
+        dot.voxels[static_cast<std::size_t>(at.x + 40 * (at.y + 40 * at.z))] = std::byte{200};
+        vessels_.replace(std::move(dot));
+        for (const char* scheme : {"gauss", "cell"}) {
+            Look look = look_;
+            look.target_mm = 2.0 * (glm::dvec3(at) - 19.5);
+            look.fov_deg = 3;
+            expect_same(parameters("composite", scheme, "linear"), look, 30);
+        }
+    }
+}
+
+/// Counts slabs that were taken (red) and those that changed the picture (green).
+ShaderTexts counting() {
+    constexpr std::array<std::string_view, 2> functions{"take_slab", "finish"};
+    return {{"volume/function_composite.glsl",
+             wrapped("volume/function_composite.glsl", functions,
+                     "float taken = 0.0;\nfloat needed = 0.0;\n"
+                     "bool take_slab(inout State state, Slab slab) {\n"
+                     "    float depth = state.depth;\n"
+                     "    bool stop = plain_take_slab(state, slab);\n"
+                     "    taken += 1.0;\n"
+                     "    needed += state.depth > depth ? 1.0 : 0.0;\n"
+                     "    return stop;\n"
+                     "}\n"
+                     "vec4 finish(State state) { return vec4(taken, needed, 0.0, 1.0); }\n")}};
+}
+
+struct Count {
+    double taken = 0.0;
+    double needed = 0.0;  ///< by an oracle that knows which slabs change the picture
+};
+
+/// The generated head where it has been made, else a plainer one.
+Count count_slabs(const nlohmann::json& points, bool skip) {
+    const std::filesystem::path file = std::filesystem::path(VISCERA_SOURCE_DIR) / "assets/volumes/head.mha";
+    VolumeStage stage(counting());
+    Log log;
+    const LiveVolume volume(std::filesystem::exists(file) ? io::load_volume(file, {}, log)
+                                                          : head_volume(160, 240.0));
+    const nlohmann::json parameters{{"transfer_function", {{"points", points}}},
+                                    {"sampling", {{"scheme", "gauss"}, {"skip", skip}}}};
+    Count count;
+    const Shot shot =
+        stage.cast(volume, parameters, {.eye_mm = {220, -480, 120}, .fov_deg = 30}, glm::ivec2(96));
+    for (int y = 0; y < 96; ++y) {
+        for (int x = 0; x < 96; ++x) {
+            count.taken += shot.at(x, y).x;
+            count.needed += shot.at(x, y).y;
+        }
+    }
+    EXPECT_GT(count.needed, 10000.0);
+    return count;
+}
+
+/// Prints what is taken beside what an oracle needs: a brick is taken whole where a voxel of it or beside it
+/// is seen.
+void expect_fewer(const char* what, const nlohmann::json& points) {
+    const Count with = count_slabs(points, true);
+    const Count without = count_slabs(points, false);
+    std::printf("  %s: %.3f slabs taken for each that is needed, %.3f without skipping\n", what,
+                with.taken / with.needed, without.taken / without.needed);
+    EXPECT_EQ(with.needed, without.needed);
+    // At least three of four slabs that an oracle leaves out are left out.
+    EXPECT_LE(with.taken - with.needed, 0.25 * (without.taken - without.needed));
+}
+
+TEST(SkippingOracle, LeavesOutWhatIsNoBone) {
+    expect_fewer("bone", {{{"value", 200}, {"opacity", 0.0}}, {{"value", 900}, {"opacity", 0.3}}});
+}
+
+TEST(SkippingOracle, LeavesOutTheAir) {
+    expect_fewer("soft tissue", {{{"value", -400}, {"opacity", 0.0}}, {{"value", 0}, {"opacity", 0.004}}});
+}
+
+/// What a renderer shows after changes, one after another, is what a fresh one shows.
+class NeverStale : public testing::Test {
+  protected:
+    void expect_fresh(const char* after) {
+        SCOPED_TRACE(after);
+        const Shot shown = stage_.cast_again(volume_, view_, size_);
+        VolumeStage fresh;
+        const LiveVolume copy(volume_.volume());
+        const Shot wanted = fresh.cast(copy, parameters_, look_, size_);
+        EXPECT_TRUE(same_bits(shown, wanted)) << difference(shown.image, wanted.image).max;
+        EXPECT_FALSE(same_bits(shown, before_)) << "the change changes nothing";
+        before_ = shown;
+    }
+    void set(const char* pointer, const nlohmann::json& value) {
+        parameters_[nlohmann::json::json_pointer(pointer)] = value;
+        stage_.stage().make_current();
+        stage_.stage().renderer().set_parameter("cast", pointer, value);
+    }
+    /// Fills a box.
+    void fill(const glm::ivec3& first, const glm::ivec3& size, int value) {
+        const std::vector<std::byte> data(static_cast<std::size_t>(size.x * size.y * size.z),
+                                          static_cast<std::byte>(value));
+        volume_.update({first, size}, data);
+    }
+    void start(nlohmann::json parameters) {
+        parameters_ = std::move(parameters);
+        before_ = stage_.cast(volume_, parameters_, look_, size_);
+        view_ = before_.view;
+    }
+
+    VolumeStage stage_;
+    LiveVolume volume_{vessel_volume(32, 2.5, 4)};
+    nlohmann::json parameters_;
+    Look look_{.eye_mm = {150, -190, 90}, .fov_deg = 24};
+    glm::ivec2 size_{64};
+    View view_;
+    Shot before_;
+};
+
+TEST_F(NeverStale, Composite) {
+    start({{"transfer_function", vessels_shown()}, {"crop", {{"first", {0, 0, 0}}}}});
+    nlohmann::json points = vessels_shown()["points"];
+    points[0]["value"] = 110;
+    set("/transfer_function/points", points);
+    expect_fresh("a narrower transfer function");
+    points[0]["value"] = 5;
+    set("/transfer_function/points", points);
+    expect_fresh("a wider transfer function");
+    set("/crop/first", {8, 0, 4});
+    expect_fresh("a crop");
+    fill({13, 11, 17}, {7, 6, 5}, 180);
+    expect_fresh("new voxels");
+    fill({13, 11, 17}, {7, 6, 5}, 0);
+    fill({29, 2, 30}, {3, 1, 2}, 255);
+    expect_fresh("voxels brighter than any before");
+    set("/crop/first", {0, 0, 0});
+    expect_fresh("no crop");
+    volume_.replace(vessel_volume(32, 2.5, 5));
+    expect_fresh("another volume");
+}
+
+TEST_F(NeverStale, Isosurface) {
+    start({{"function", "isosurface"},
+           {"transfer_function", vessels_shown()},
+           {"isosurface", {{"values", {{{"value", 150}}}}}}});
+    set("/isosurface/values", {{{"value", 40}}});
+    expect_fresh("a lower value");
+    fill({13, 11, 17}, {7, 6, 5}, 200);
+    expect_fresh("new voxels");
+    set("/isosurface/values", {{{"value", 230}}});
+    fill({4, 21, 7}, {7, 6, 5}, 255);
+    expect_fresh("a value that only new voxels have");
+}
+
+TEST_F(NeverStale, AverageAndMaximum) {
+    start({{"function", "average"}, {"transfer_function", vessels_shown()}, {"threshold", 150}});
+    set("/threshold", 70);
+    expect_fresh("a lower threshold");
+    fill({13, 11, 17}, {7, 6, 5}, 200);
+    expect_fresh("new voxels");
+    set("/function", "mip");
+    expect_fresh("another function");
+    fill({4, 21, 7}, {7, 6, 5}, 255);
+    expect_fresh("new voxels");
+}
+
+TEST_F(NeverStale, PreintegratedAndPrefiltered) {
+    start({{"transfer_function", vessels_shown()},
+           {"sampling", {{"scheme", "preintegrated"}, {"filter", "bspline"}}}});
+    nlohmann::json points = vessels_shown()["points"];
+    points[0]["value"] = 100;
+    set("/transfer_function/points", points);
+    expect_fresh("a narrower transfer function");
+    fill({13, 11, 17}, {7, 6, 5}, 255);
+    expect_fresh("new voxels, brighter than any before");
+}
+
+}  // namespace
+}  // namespace viscera::test
