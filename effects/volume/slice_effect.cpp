@@ -110,9 +110,11 @@ void SliceEffect::make_table(const gl::Functions& gl, const TexelMap& stored_of_
     if (params_.transfer_function.empty()) {
         function = make_window({values.max - values.min, 0.5 * (values.min + values.max)});
     }
-    // A window is often narrow beside the volume's range, and constant beyond its ends.
-    double low = std::max(values.min, function.points.front().value);
-    double high = std::min(values.max, function.points.back().value);
+    // A window is often narrow beside the volume's range, and constant beyond its ends. Cubic filters leave
+    // the range of the voxels.
+    const double beyond = params_.sampling.is_tricubic() ? 0.5 * (values.max - values.min) : 0.0;
+    double low = std::max(values.min - beyond, function.points.front().value);
+    double high = std::min(values.max + beyond, function.points.back().value);
     if (!(low < high)) {
         low = values.min;
         high = values.max;
