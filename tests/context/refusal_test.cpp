@@ -142,7 +142,10 @@ class NvidiaRemark : public testing::Test {
         fs::create_directories((root_ / file).parent_path());
         std::ofstream(root_ / file) << "x";
     }
-    fs::path root_ = fs::path(testing::TempDir()) / "viscera_nvidia_remark";
+    // One folder a test: they run side by side.
+    fs::path root_ =
+        fs::path(testing::TempDir()) / (std::string("viscera_nvidia_remark_") +
+                                        testing::UnitTest::GetInstance()->current_test_info()->name());
 
   private:
     ScopedVariable files_{"__EGL_VENDOR_LIBRARY_FILENAMES", std::nullopt};
