@@ -266,7 +266,10 @@ class VolumeFiles : public testing::Test {
         EXPECT_TRUE(unpacked == volume.voxels);
     }
 
-    fs::path folder_ = fs::path(testing::TempDir()) / "viscera_assets_volume_files";
+    // One folder a test: they run side by side.
+    fs::path folder_ =
+        fs::path(testing::TempDir()) /
+        (std::string("viscera_assets_") + testing::UnitTest::GetInstance()->current_test_info()->name());
     std::string header_;
 };
 
