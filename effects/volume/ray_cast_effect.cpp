@@ -264,6 +264,9 @@ void RayCastEffect::draw(const Pass& pass) {
     gpu.set(program);
     pass.bind(program, "u_volume", gpu.texture(), params_.sampling.reconstruction.texture_filter());
     pass.bind(program, "u_transfer", *table_, gl::Filter::nearest);
+    if (params_.sub_volume) {
+        program.set("u_sub_volume_depth", static_cast<float>(params_.sub_volume->depth_mm));
+    }
     if (!params_.look.clip_planes.empty()) {
         set_clips(program, params_.look.clip_planes, texture_to_world_);
     }

@@ -36,6 +36,10 @@ void XrayParams::visit(ParamVisitor& v) {
     v.field({.name = "negative", .doc = "Shows what is absorbed as bright, as films do."}, negative);
 }
 
+void SubVolumeParams::visit(ParamVisitor& v) {
+    v.field({.name = "depth_mm", .doc = "Length of each ray.", .unit = "mm", .min = 0.0}, depth_mm);
+}
+
 void RayCastParams::visit(ParamVisitor& v) {
     v.field({.name = "volume", .doc = "The volume.", .required = true}, volume);
     v.field({.name = "function",
@@ -45,6 +49,10 @@ void RayCastParams::visit(ParamVisitor& v) {
     v.field({.name = "transfer_function", .doc = "Colour and opacity over value."}, transfer_function);
     v.field({.name = "sampling", .doc = "Where rays are sampled: time against error."}, sampling);
     v.field({.name = "crop", .doc = "Part of the volume that is shown."}, crop);
+    v.field({.name = "sub_volume",
+             .doc = "Only a given depth behind where rays start: a drawn surface (sampling.limits), a clip "
+                    "plane or the box."},
+            sub_volume);
     v.field({.name = "xray", .doc = "Attenuation and film (xray)."}, xray);
     v.field({.name = "threshold", .doc = "Values below it are dropped (mip, minip, average)."}, threshold);
     v.field({.name = "isosurface", .doc = "Surfaces of constant value (isosurface)."}, isosurface);

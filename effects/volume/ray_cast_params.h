@@ -34,12 +34,21 @@ struct XrayParams {
     void visit(ParamVisitor& v);
 };
 
+/// Only the first part of each ray: from where it starts, at a drawn surface (sampling.limits), a clip plane
+/// or the box.
+struct SubVolumeParams {
+    double depth_mm = 10.0;
+
+    void visit(ParamVisitor& v);
+};
+
 struct RayCastParams {
     SourceParams volume;
     std::optional<RayFunction> function;
     TransferParams transfer_function;
     SamplingParams sampling;
     CropParams crop;
+    std::optional<SubVolumeParams> sub_volume;
     XrayParams xray;
     std::optional<double> threshold;
     IsosurfaceParams isosurface;

@@ -47,6 +47,9 @@ std::span<const ProgramDesc> RayCastEffect::programs() const {
                 program.defines.push_back("LIMITS " +
                                           std::to_string(static_cast<int>(params_.sampling.limits)));
             }
+            if (params_.sub_volume) {
+                program.defines.emplace_back("SUB_VOLUME");
+            }
             const std::vector<std::string> clip = clip_defines(params_.look.clip_planes);
             program.defines.insert(program.defines.end(), clip.begin(), clip.end());
             if (function != RayFunction::composite) {

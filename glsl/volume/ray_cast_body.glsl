@@ -42,6 +42,10 @@
 #include "volume/clip.glsl"
 #endif
 
+#ifdef SUB_VOLUME
+uniform float u_sub_volume_depth;  // [mm]
+#endif
+
 vec4 cast_ray(vec2 pixel) {
     Ray ray = pixel_ray(pixel);
 #ifdef SURFACE
@@ -54,6 +58,9 @@ vec4 cast_ray(vec2 pixel) {
 #else
     const float offset = 0.0;
 #endif
+#ifdef SUB_VOLUME
+    float sub_volume_end = 3e38;
+#endif
     for (int i = 0; i < max_intervals; ++i) {
         vec2 interval = ray_interval(ray, i);
 #ifdef LIMITS
@@ -63,6 +70,11 @@ vec4 cast_ray(vec2 pixel) {
         interval = clip_interval(ray, interval);
 #endif
         interval = vec2(max(interval.x, ray.near), min(interval.y, ray.far));
+#ifdef SUB_VOLUME
+        bool starts = sub_volume_end == 3e38 && interval.x < interval.y;
+        sub_volume_end = starts ? interval.x + u_sub_volume_depth : sub_volume_end;
+        interval.y = min(interval.y, sub_volume_end);
+#endif
         march(ray, interval, offset, state);
     }
 #ifdef BACKGROUND
