@@ -5,6 +5,7 @@
 #include "engine/core/error.h"
 #include "samples/viscera/bench/cases.h"
 #include "samples/viscera/bench/report.h"
+#include "samples/viscera/bench/scene_case.h"
 #include "samples/viscera/commands.h"
 #include "samples/viscera/session.h"
 
@@ -19,6 +20,9 @@ struct BenchArguments {
     int repeats = 20;
     std::filesystem::path assets = std::filesystem::path(VISCERA_SOURCE_DIR) / "assets";
     std::filesystem::path report;
+    std::filesystem::path scene;
+    std::vector<std::string> overrides;
+    std::filesystem::path pixels;
     bool list = false;
 };
 
@@ -46,7 +50,12 @@ int bench(const BenchArguments& arguments) {
         }
         return 0;
     }
-    const std::vector<const Case*> chosen = choose(arguments.cases);
+    const std::vector<const Case*> chosen =
+        arguments.scene.empty() ? choose(arguments.cases) : std::vector<const Case*>();
+    std::vector<SceneOverride> overrides;
+    for (const std::string& text : arguments.overrides) {
+        overrides.push_back(parse_override(text));
+    }
     const auto [width, height] = parse_resolution(arguments.resolution);
     const std::unique_ptr<Context> context = arguments.context.open();
     Lab lab(*context, {.assets = arguments.assets,
@@ -61,6 +70,13 @@ int bench(const BenchArguments& arguments) {
         one->run(lab);
         print_table(std::cout, std::span(lab.rows()).subspan(before), lab.hardware());
         std::cout.flush();
+    }
+    if (!arguments.scene.empty()) {
+        Scene scene = load_scene(arguments.scene, overrides);
+        scene.width = width;
+        scene.height = height;
+        run_scene(lab, scene, arguments.pixels);
+        print_table(std::cout, lab.rows(), lab.hardware());
     }
     if (!arguments.report.empty()) {
         const ContextInfo& info = context->info();
@@ -95,6 +111,14 @@ void add_bench(CLI::App& app, int& exit_code) {
         ->check(CLI::Range(1, 100000));
     command->add_option("--assets", arguments->assets, "folder with scenes, meshes and pictures");
     command->add_option("--report", arguments->report, "writes every row as JSON");
+    command->add_option("--scene", arguments->scene, "times this scene's frames in place of the cases");
+    command
+        ->add_option("--set", arguments->overrides,
+                     "/json/pointer=value: changes --scene before it is read; may be given many times")
+        ->take_all()
+        ->allow_extra_args(false);
+    command->add_option("--pixels", arguments->pixels,
+                        "writes the first output of --scene as float32, top row first");
     command->add_flag("--list", arguments->list, "names the cases and stops");
     command->callback([arguments, &exit_code] { exit_code = bench(*arguments); });
 }

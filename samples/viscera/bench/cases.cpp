@@ -5,7 +5,7 @@
 namespace viscera::app {
 
 std::span<const Case> all_cases() {
-    static constexpr std::array<Case, 16> cases{{
+    static constexpr std::array<Case, 21> cases{{
         {"ceilings", "copy and clear per format, fetches, exp, vertices, triangles", run_ceilings},
         {"readback", "read-back per format, waiting and not waiting", run_read_back},
         {"geometry", "one pass over the vessels against three", run_geometry},
@@ -22,6 +22,11 @@ std::span<const Case> all_cases() {
         {"opacity", "the opacity curve in closed form against its 25 terms", run_opacity},
         {"density", "arrival time against densities uploaded each frame", run_density},
         {"resolution", "the default scene by size", run_resolution},
+        {"volume", "ray functions against as many plain trilinear samples", run_volume},
+        {"steps", "composition by scheme and step", run_steps},
+        {"skipping", "empty bricks left out, by how many are occupied", run_skipping},
+        {"quality", "the ray caster's knobs, one at a time", run_quality},
+        {"filters", "time per sample of a volume by filter, beside its error", run_filters},
     }};
     return cases;
 }

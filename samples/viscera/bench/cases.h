@@ -33,5 +33,10 @@ void run_precision(Lab& lab);
 void run_opacity(Lab& lab);
 void run_density(Lab& lab);
 void run_resolution(Lab& lab);
+void run_volume(Lab& lab);
+void run_steps(Lab& lab);
+void run_skipping(Lab& lab);
+void run_quality(Lab& lab);
+void run_filters(Lab& lab);
 
 }  // namespace viscera::app

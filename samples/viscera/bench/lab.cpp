@@ -57,16 +57,19 @@ void Lab::add(Row row) {
 }
 
 Stage::Stage(Lab& lab, const nlohmann::json& scene, Options options)
-    : lab_(lab), options_(std::move(options)) {
+    : Stage(lab, parse_scene(scene.dump(), lab.options().assets / "scenes" / "bench.json"),
+            std::move(options)) {}
+
+Stage::Stage(Lab& lab, Scene scene, Options options) : lab_(lab), options_(std::move(options)) {
     RendererOptions made{.log = lab.options().log,
                          .shaders = options_.shaders ? options_.shaders : bench_shaders(),
                          .timers = false,
-                         .compute = lab.options().compute};
+                         .compute = options_.compute.value_or(lab.options().compute)};
     if (options_.by_pass) {
         made.observer = [this](std::string_view pass, bool begins) { observe(pass, begins); };
     }
     renderer_ = std::make_unique<Renderer>(lab.proc(), lab.registry(), std::move(made));
-    renderer_->set_scene(parse_scene(scene.dump(), lab.options().assets / "scenes" / "bench.json"));
+    renderer_->set_scene(std::move(scene));
     whole_timer_ = std::make_unique<gl::GpuTimer>(lab.gl(), lab.capabilities().software);
 }
 
@@ -145,7 +148,7 @@ void Stage::frame(const Edit& edit, bool measured) {
 }
 
 void Stage::run(const Edit& edit) {
-    const int warm = lab_.hardware() ? warm_frames_hardware : warm_frames_software;
+    const int warm = options_.warm.value_or(lab_.hardware() ? warm_frames_hardware : warm_frames_software);
     for (int i = 0; i < warm; ++i) {
         frame(edit, false);
     }

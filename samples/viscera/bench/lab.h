@@ -24,6 +24,7 @@ struct Row {
     std::string name;
     Samples samples;
     std::optional<double> error;  ///< largest absolute difference
+    std::optional<double> rms;    ///< root of the mean squared difference
     std::string error_of;         ///< against what
     std::optional<double> value;  ///< a rate or another figure
     std::string unit;             ///< of `value`
@@ -81,15 +82,22 @@ class Stage {
         double step_s = 1.0 / 512;    ///< 0: a still
         int repeats = 0;              ///< 0: as the lab's
         HostStatePolicy host_state = HostStatePolicy::host_resets;
+        std::optional<int> warm;            ///< frames before the measured ones; none: as many as it takes
+        std::optional<ComputeUse> compute;  ///< in place of the lab's
     };
     Stage(Lab& lab, const nlohmann::json& scene) : Stage(lab, scene, Options()) {}
     Stage(Lab& lab, const nlohmann::json& scene, Options options);
+    Stage(Lab& lab, Scene scene, Options options);
 
     using Edit = std::function<void(Frame&)>;
     /// Warm frames, then the measured ones.
     void run(const Edit& edit = {});
 
     [[nodiscard]] const Samples& pass(const std::string& name) const { return passes_.at(name); }
+    /// Empty when the pass was never drawn.
+    [[nodiscard]] Samples pass_or_none(const std::string& name) const {
+        return passes_.contains(name) ? passes_.at(name) : Samples();
+    }
     [[nodiscard]] const Samples& whole() const { return whole_; }
     [[nodiscard]] Renderer& renderer() { return *renderer_; }
     [[nodiscard]] Image read(std::string_view target) { return renderer_->read(target); }

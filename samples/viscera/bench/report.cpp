@@ -36,7 +36,7 @@ void print_table(std::ostream& out, std::span<const Row> rows, bool hardware) {
             out << '\n'
                 << std::left << std::setw(38) << group << std::right << std::setw(10) << "ms" << std::setw(21)
                 << "quartiles" << std::setw(10) << "cpu ms" << std::setw(9) << "ratio" << std::setw(9)
-                << "by cpu" << std::setw(7) << "goal" << std::setw(11) << "error"
+                << "by cpu" << std::setw(7) << "goal" << std::setw(11) << "error" << std::setw(11) << "rms"
                 << "  of what\n";
         }
         const Spread time = times(row.samples);
@@ -50,7 +50,8 @@ void print_table(std::ostream& out, std::span<const Row> rows, bool hardware) {
         out << std::setw(9) << (std::isnan(by_time) ? "" : fixed(by_time, 3)) << std::setw(9)
             << (std::isnan(by_work) || hardware ? "" : fixed(by_work, 3));
         out << std::setw(7) << (row.goal ? fixed(*row.goal, 2) : "");
-        out << std::setw(11) << (row.error ? significant(*row.error) : "") << "  ";
+        out << std::setw(11) << (row.error ? significant(*row.error) : "") << std::setw(11)
+            << (row.rms ? significant(*row.rms) : "") << "  ";
         if (row.value) {
             out << significant(*row.value) << ' ' << row.unit << "; ";
         }
@@ -83,6 +84,9 @@ nlohmann::json to_json(std::span<const Row> rows, bool hardware) {
         if (row.error) {
             entry["error"] = *row.error;
             entry["error_against"] = row.error_of;
+        }
+        if (row.rms) {
+            entry["rms"] = *row.rms;
         }
         if (!row.base.empty()) {
             entry["ceiling"] = row.ceiling;

@@ -5,6 +5,7 @@
 #include "engine/gl/sampler.h"
 #include "engine/runtime/embedded_shaders.h"
 #include "engine/runtime/pass.h"
+#include "samples/viscera/bench/volume_pass.h"
 
 namespace viscera::app {
 
@@ -97,6 +98,7 @@ void register_bench_effects(Registry& registry) {
         {.programs = {{"bench/triangles.vert", "bench/white.frag", {}}}, .triangles = true});
     add("bench.vertices",
         {.programs = {{"bench/triangles.vert", "bench/white.frag", {"HIDDEN"}}}, .triangles = true});
+    register_volume_passes(registry);
 }
 
 ShaderReader bench_shaders() {
