@@ -1,0 +1,195 @@
+#include <cmath>
+#include <ctime>
+#include <numbers>
+#include <thread>
+
+#include "effects/volume/gpu_volume.h"
+#include "effects/volume/prefilter.h"
+#include "effects/volume/reconstruction.h"
+#include "engine/gl/buffer.h"
+#include "engine/gl/framebuffer.h"
+#include "engine/gl/pixel_transfer.h"
+#include "engine/gl/program.h"
+#include "engine/gl/raster_state.h"
+#include "engine/runtime/assets.h"
+#include "samples/viscera/bench/cases.h"
+#include "samples/viscera/bench/shader_pass.h"
+
+namespace viscera::app {
+namespace {
+
+using volume::ReconstructionFilter;
+using volume::ReconstructionParams;
+
+constexpr int voxels = 81;
+constexpr double spacing = 2.0 / (voxels - 1);
+
+/// The test signal of Marschner and Lobb, "An evaluation of reconstruction filters for volume rendering"
+/// (1994), on [-1, 1]^3.
+double marschner_lobb(const glm::dvec3& p) {
+    constexpr double pi = std::numbers::pi;
+    const double wave = std::cos(12.0 * pi * std::cos(0.5 * pi * std::hypot(p.x, p.y)));
+    return (1.0 - std::sin(0.5 * pi * p.z) + 0.25 * (1.0 + wave)) / 2.5;
+}
+
+volume::Source make_signal() {
+    std::vector<float> values;
+    for (int z = 0; z < voxels; ++z) {
+        for (int y = 0; y < voxels; ++y) {
+            for (int x = 0; x < voxels; ++x) {
+                values.push_back(static_cast<float>(marschner_lobb(spacing * glm::dvec3(x, y, z) - 1.0)));
+            }
+        }
+    }
+    Volume volume{.grid = {.dims = glm::ivec3(voxels)}, .type = ScalarType::f32, .source = "signal"};
+    const auto bytes = std::as_bytes(std::span(values));
+    volume.voxels.assign(bytes.begin(), bytes.end());
+    volume::Source source;
+    source.statistics = statistics(volume);
+    source.key = 1;
+    source.owned = std::make_shared<const Volume>(std::move(volume));
+    return source;
+}
+
+struct FilterCase {
+    const char* name;
+    ReconstructionFilter filter;
+    bool prefilter;
+};
+constexpr std::array<FilterCase, 9> filter_cases{
+    {{"nearest", ReconstructionFilter::nearest, false},
+     {"linear", ReconstructionFilter::linear, false},
+     {"linear_fp32", ReconstructionFilter::linear_fp32, false},
+     {"bspline without prefilter", ReconstructionFilter::bspline, false},
+     {"bspline_fp32 without prefilter", ReconstructionFilter::bspline_fp32, false},
+     {"bspline", ReconstructionFilter::bspline, true},
+     {"bspline_fp32", ReconstructionFilter::bspline_fp32, true},
+     {"catmull_rom", ReconstructionFilter::catmull_rom, false},
+     {"catmull_rom_fp32", ReconstructionFilter::catmull_rom_fp32, false}}};
+
+double processor_ms() {
+    return 1e3 * static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
+
+/// Draws one program over a target again and again.
+class Drawing {
+  public:
+    Drawing(Lab& lab, const gl::Program& program)
+        : lab_(lab),
+          program_(program),
+          target_(gl::Texture::make_2d(lab.gl(), lab.options().width, lab.options().height,
+                                       PixelFormat::rgba32f, "samples")),
+          framebuffer_(lab.gl(), target_, "samples"),
+          no_vertices_(lab.gl()) {}
+
+    [[nodiscard]] Samples measure(const volume::GpuVolume& gpu, const ReconstructionParams& params) {
+        const gl::Functions& gl = lab_.gl();
+        const gl::Sampler sampler(gl, {.filter = params.texture_filter()});
+        framebuffer_.bind();
+        gl::apply(gl, gl::overwrite_state, {0, 0, target_.width(), target_.height()});
+        program_.use();
+        program_.set("u_pixels", glm::vec2(target_.width(), target_.height()));
+        gpu.set(program_);
+        program_.bind("u_volume", gpu.texture(), sampler);
+        no_vertices_.bind();
+        Samples samples;
+        for (int i = -2; i < lab_.options().repeats; ++i) {  // the first ones compile
+            gl::GpuTimer timer(gl, !lab_.hardware());
+            gl.Finish();
+            const gl::CpuTimer wall;
+            const double work = processor_ms();
+            timer.begin();
+            gl.DrawArrays(GL_TRIANGLES, 0, 3);
+            timer.end();
+            gl.Finish();
+            const Sample sample{wall.milliseconds(), processor_ms() - work};
+            if (i >= 0) {
+                samples.push_back(lab_.hardware() ? Sample{timer.latest_ms().value_or(sample.time_ms), 0.0}
+                                                  : sample);
+            }
+        }
+        return samples;
+    }
+
+    /// Root mean square difference to the signal.
+    [[nodiscard]] double error() const {
+        const Image image = gl::read_texture(lab_.gl(), target_);
+        double sum = 0.0;
+        for (int y = 0; y < image.height; ++y) {
+            for (int x = 0; x < image.width; ++x) {
+                const glm::dvec3 place(image.at(x, y, 0), image.at(x, y, 1), image.at(x, y, 2));
+                const glm::dvec3 p = spacing * (static_cast<double>(voxels) * place - 0.5) - 1.0;
+                const double off = static_cast<double>(image.at(x, y, 3)) - marschner_lobb(p);
+                sum += off * off;
+            }
+        }
+        return std::sqrt(sum / (static_cast<double>(image.width) * image.height));
+    }
+
+  private:
+    Lab& lab_;
+    const gl::Program& program_;
+    gl::Texture target_;
+    gl::Framebuffer framebuffer_;
+    gl::VertexArray no_vertices_;
+};
+
+gl::Program make_program(Lab& lab, const ReconstructionParams& params, bool atlas, bool gradient) {
+    std::vector<std::string> defines = params.defines();
+    if (atlas) {
+        defines.emplace_back("STORAGE_ATLAS");
+    }
+    if (gradient) {
+        defines.emplace_back("GRADIENT");
+    }
+    const ShaderReader reader = bench_shaders();
+    return {lab.gl(), expand_shader("common/fullscreen.vert", defines, reader),
+            expand_shader("bench/filter.frag", defines, reader), "filter"};
+}
+
+}  // namespace
+
+void run_filters(Lab& lab) {
+    Log log;
+    Assets assets(log);
+    const volume::Source signal = make_signal();
+    const double samples_drawn = static_cast<double>(lab.options().width) * lab.options().height;
+    Samples linear;
+    for (const volume::Storage storage : {volume::Storage::texture_3d, volume::Storage::atlas}) {
+        for (const FilterCase& filter : filter_cases) {
+            for (const bool gradient : {false, true}) {
+                const bool atlas = storage == volume::Storage::atlas;
+                if (atlas && (gradient || filter.prefilter)) {
+                    continue;
+                }
+                const ReconstructionParams params{filter.filter, filter.prefilter};
+                std::shared_ptr<const volume::Source> coefficients;
+                if (params.uses_coefficients()) {
+                    coefficients = volume::load_coefficients(assets, signal, 0);
+                }
+                const volume::GpuVolume gpu(lab.gl(), coefficients ? *coefficients : signal, 0, storage);
+                const gl::Program program = make_program(lab, params, atlas, gradient);
+                Drawing drawing(lab, program);
+                const Samples samples = drawing.measure(gpu, params);
+                if (filter.filter == ReconstructionFilter::linear && !gradient && !atlas) {
+                    linear = samples;
+                }
+                Row row{.group = "filters",
+                        .name = std::string(filter.name) + (atlas ? ", atlas" : "") +
+                                (gradient ? ", gradient" : ""),
+                        .samples = samples,
+                        .value = 1e6 * times(samples).median / samples_drawn,
+                        .unit = gradient ? "ns per gradient" : "ns per sample",
+                        .ceiling = linear.empty() ? "" : "linear",
+                        .base = linear};
+                if (!gradient) {
+                    row.error = drawing.error();
+                    row.error_of = "Marschner-Lobb at 81 voxels (rms)";
+                }
+                lab.add(std::move(row));
+            }
+        }
+    }
+}
+
+}  // namespace viscera::app
