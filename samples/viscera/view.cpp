@@ -14,6 +14,7 @@
 #include "samples/viscera/commands.h"
 #include "samples/viscera/interactive_rate.h"
 #include "samples/viscera/session.h"
+#include "samples/viscera/slice_hand.h"
 #include "samples/viscera/title_progress.h"
 #include "samples/viscera/window_hand.h"
 
@@ -23,6 +24,7 @@ namespace {
 constexpr std::string_view help = R"(left drag           rotate
 middle, Shift+left  pan
 right drag, wheel   zoom
+wheel, up, down     the next slice, where slices are shown (Shift+arrow: ten on)
 L and left drag     window (sideways) and level (up, down) of volumes
 keypad 1, 3, 7      front, left, head
 space               stop and go on in time
@@ -30,7 +32,7 @@ left, right         one frame back, on
 T                   time back to the scene's beginning
 Tab                 next target
 S, E                save the target as PNG, as EXR
-R                   reset the camera, window and level
+R                   reset the camera, slices, window and level
 F                   read shaders again (with --glsl)
 H                   this help
 Esc                 quit
@@ -54,17 +56,24 @@ class Viewer {
           window_(window),
           renderer_(renderer),
           camera_(renderer.scene().camera),
-          levels_(renderer) {
+          levels_(renderer),
+          slices_(renderer) {
         window_.events.button = [this](MouseButton button, bool pressed, Modifiers modifiers) {
             press(button, pressed, modifiers);
         };
         window_.events.cursor = [this](double x, double y) { drag(x, y); };
-        window_.events.scroll = [this](double, double y) { zoom(camera_, std::pow(1.1, y)); };
-        window_.events.key = [this](int key, bool pressed, Modifiers) {
+        window_.events.scroll = [this](double, double y) {
+            if (slices_.shows(targets_[target_])) {
+                slices_.scroll(targets_[target_], y);
+            } else {
+                zoom(camera_, std::pow(1.1, y));
+            }
+        };
+        window_.events.key = [this](int key, bool pressed, Modifiers modifiers) {
             if (key == 'L') {
                 holds_l_ = pressed;
             } else if (pressed) {
-                type(key);
+                type(key, modifiers.shift ? 10.0 : 1.0);
             }
         };
         const bool volumes = std::ranges::any_of(renderer.scene().passes, [](const ScenePass& pass) {
@@ -100,7 +109,7 @@ class Viewer {
         }
         Frame frame = make_frame(size);
         if (rate_) {
-            frame.quality = rate_->begin(frame, levels_.revision());
+            frame.quality = rate_->begin(frame, levels_.revision() + slices_.revision());
         }
         const FrameReport& report = renderer_.render(frame);
         if (rate_) {
@@ -161,7 +170,8 @@ class Viewer {
         }
     }
 
-    void type(int pressed) {
+    /// leap: slices that an arrow goes on.
+    void type(int pressed, double leap) {
         const double step_s = 1.0 / renderer_.scene().frames_per_second;
         switch (pressed) {
             case key::escape:
@@ -170,6 +180,10 @@ class Viewer {
                 target_ = (target_ + 1) % targets_.size();
                 renderer_.keep({targets_[target_]});
                 return window_.set_title("viscera: " + targets_[target_]);
+            case key::up:
+                return slices_.scroll(targets_[target_], leap);
+            case key::down:
+                return slices_.scroll(targets_[target_], -leap);
             case key::left:
                 time_s_ = std::max(0.0, time_s_ - step_s);
                 return;
@@ -184,6 +198,7 @@ class Viewer {
                 return;
             case 'R':
                 camera_ = renderer_.scene().camera;
+                slices_.reset();
                 return levels_.reset();
             case 'S':
                 return save(".png");
@@ -228,6 +243,7 @@ class Viewer {
     Renderer& renderer_;
     CameraParams camera_;
     WindowHand levels_;
+    SliceHand slices_;
     std::optional<InteractiveRate> rate_;
     bool shows_full_ = true;
     bool holds_l_ = false;
