@@ -16,8 +16,10 @@ vec2 ray_interval(Ray ray, int index) {
     vec3 inverse = reciprocal(ray.direction);
     vec3 a = (u_box_min - ray.origin) * inverse;
     vec3 b = (u_box_max - ray.origin) * inverse;
-    vec3 enter = min(a, b);
-    vec3 leave = max(a, b);
+    // A ray that runs in a face itself belongs to the box, all of it.
+    vec3 slack = 1e24 * vec3(lessThan(abs(ray.direction), vec3(1e-30)));
+    vec3 enter = min(a, b) - slack;
+    vec3 leave = max(a, b) + slack;
     return vec2(max(max(enter.x, enter.y), enter.z), min(min(leave.x, leave.y), leave.z));
 }
 

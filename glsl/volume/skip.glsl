@@ -41,7 +41,8 @@ Run run_from(Leaper leaper, float at) {
 vec2 occupied_span(Leaper leaper) {
     vec3 a = (u_occupied_low - leaper.first) * leaper.inverse;
     vec3 b = (u_occupied_high - leaper.first) * leaper.inverse;
-    vec3 enter = min(a, b);
-    vec3 leave = max(a, b);
+    vec3 slack = 1e24 * vec3(lessThan(abs(leaper.extent), vec3(1e-30)));  // as in the box's own interval
+    vec3 enter = min(a, b) - slack;
+    vec3 leave = max(a, b) + slack;
     return vec2(max(max(enter.x, enter.y), enter.z), min(min(leave.x, leave.y), leave.z));
 }
