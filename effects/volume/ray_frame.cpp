@@ -1,14 +1,17 @@
 #include "effects/volume/ray_frame.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace viscera::volume {
 namespace {
 
 /// Distance in front of the eye that the projection maps to a normalised depth.
 double eye_depth(const glm::dmat4& projection, bool orthographic, double ndc_z) {
-    return orthographic ? (projection[3][2] - ndc_z) / projection[2][2]
-                        : projection[3][2] / (ndc_z + projection[2][2]);
+    const double rise = orthographic ? projection[2][2] : ndc_z + projection[2][2];
+    // A far plane that rounds to infinity is infinitely far.
+    return rise == 0.0 ? std::numeric_limits<double>::infinity()
+                       : (projection[3][2] - (orthographic ? ndc_z : 0.0)) / rise;
 }
 
 }  // namespace
@@ -25,12 +28,13 @@ RayFrame make_ray_frame(const View& view, const glm::dmat4& texture_to_world) {
     // An eye inside the volume, or in front of it, still needs a plane that it can see.
     const double plane = std::max({-centre.z, near, view.orthographic ? -1e300 : 0.25 * radius});
 
-    const glm::dmat4 unproject = glm::inverse(view.projection);
-    const glm::dvec4 clip = view.projection * glm::dvec4(0.0, 0.0, -plane, 1.0);
-    const double ndc_z = clip.z / clip.w;
+    // Not by the inverse of the projection: a near plane next to the eye leaves it no digits.
+    const glm::dmat4& p = view.projection;
+    const double w = view.orthographic ? 1.0 : plane;
+    const glm::dmat2 across = glm::inverse(glm::dmat2(p[0][0], p[0][1], p[1][0], p[1][1]));
     const auto at = [&](double x, double y) {
-        const glm::dvec4 p = unproject * glm::dvec4(x, y, ndc_z, 1.0);
-        return glm::dvec3(p) / p.w;
+        const glm::dvec2 rest = glm::dvec2(x, y) * w + plane * glm::dvec2(p[2]) - glm::dvec2(p[3]);
+        return glm::dvec3(across * rest, -plane);
     };
     const glm::dvec3 middle = at(0.0, 0.0);
     const std::array<glm::dvec3, 3> eye{middle, at(1.0, 0.0) - middle, at(0.0, 1.0) - middle};
