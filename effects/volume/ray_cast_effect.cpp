@@ -131,11 +131,13 @@ void RayCastEffect::make_table(const gl::Functions& gl, const TexelMap& stored_o
 }
 
 Work RayCastEffect::prepare(Prepare& prepare) {
-    const bool changed = parameters_key_ != prepare.parameters_key();
     source_ = load_source(prepare.assets(), params_.volume, prepare.frame());
     if (!source_) {
         return Work::idle("the host gives no volume of this name");
     }
+    // A host may put a volume of another grid in its place.
+    const bool changed =
+        parameters_key_ != prepare.parameters_key() || source_version_ != source_->version();
     const bool coefficients = params_.sampling.reconstruction.uses_coefficients();
     sampled_channel_ = coefficients ? 0 : params_.volume.channel;
     sampled_ = coefficients ? load_coefficients(prepare.assets(), *source_, params_.volume.channel) : source_;
@@ -144,6 +146,7 @@ Work RayCastEffect::prepare(Prepare& prepare) {
         find_function(prepare);
         find_crop();
         texture_to_world_ = placed(volume.grid, params_.volume.placement);
+        source_version_ = source_->version();
         parameters_key_ = prepare.parameters_key();  // only now: any of the above may fail or be cancelled
     }
     if (params_.transfer_function.empty() && variant_.function != RayFunction::xray &&

@@ -55,6 +55,7 @@ class RayCastEffect final : public Effect {
     mutable std::vector<Variant> variants_;  ///< of each program
     Variant variant_;                        ///< of this frame
     std::uint64_t parameters_key_ = 0;
+    std::uint64_t source_version_ = 0;
     std::shared_ptr<const Source> source_;
     std::shared_ptr<const Source> sampled_;  ///< what the texture holds: the source or its coefficients
     int sampled_channel_ = 0;

@@ -2,10 +2,46 @@
 
 #include <algorithm>
 
+#include "engine/core/error.h"
 #include "engine/core/hash.h"
 #include "engine/io/volume.h"
 
 namespace viscera::volume {
+namespace {
+
+/// Of one channel. Throws Error(scene) where there is none of the number.
+VolumeStatistics channel_statistics(const Volume& volume, int channel) {
+    if (channel >= volume.channels) {
+        throw Error(ErrorCode::scene, "/volume/channel",
+                    volume.source + " has no channel " + std::to_string(channel) + ", only " +
+                        std::to_string(volume.channels));
+    }
+    return statistics(volume, channel);
+}
+
+/// One object for all versions, or each would leave another behind.
+std::shared_ptr<const Source> live_source(Assets& assets, const LiveVolume& live, int channel) {
+    const std::uint64_t key = Hash().add(&live).value();
+    const std::shared_ptr<Source> source = assets.shared<Source>(Hash().add(key).add(channel).value(),
+                                                                 [] { return std::make_shared<Source>(); });
+    if (source->statistics_version == live.version()) {
+        return source;
+    }
+    const Volume& volume = live.volume();
+    source->statistics = channel_statistics(volume, channel);
+    if (const std::size_t count = source->statistics.non_finite; count > 0) {
+        assets.log().fault(
+            "volume.non_finite",
+            volume.source + ": " + std::to_string(count) + " voxels are NaN or infinite; they stay empty",
+            count);
+    }
+    source->live = &live;
+    source->key = key;
+    source->statistics_version = live.version();
+    return source;
+}
+
+}  // namespace
 
 void SourceParams::visit(ParamVisitor& v) {
     v.field({.name = "file", .doc = "Volume file, or folder of slices."}, file);
@@ -32,14 +68,7 @@ std::shared_ptr<const Source> load_source(Assets& assets, const SourceParams& pa
         if (found == frame.volumes.end() || found->volume == nullptr) {
             return nullptr;
         }
-        const std::uint64_t key = Hash().add(found->volume).add(found->volume->version()).value();
-        return assets.shared<Source>(key, [&] {
-            auto source = std::make_shared<Source>();
-            source->live = found->volume;
-            source->statistics = statistics(found->volume->volume(), params.channel);
-            source->key = Hash().add(found->volume).value();
-            return source;
-        });
+        return live_source(assets, *found->volume, params.channel);
     }
     const std::uint64_t key =
         Hash().add(params.file.path.string()).add(params.reduce).add(params.channel).value();
@@ -50,8 +79,7 @@ std::shared_ptr<const Source> load_source(Assets& assets, const SourceParams& pa
                             {.progress = assets.progress("loading " + params.file.path.filename().string()),
                              .reduce = params.reduce},
                             assets.log()));
-        source->statistics =
-            statistics(*source->owned, std::min(params.channel, source->owned->channels - 1));
+        source->statistics = channel_statistics(*source->owned, params.channel);
         source->key = key;
         return source;
     });

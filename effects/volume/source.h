@@ -30,7 +30,8 @@ struct Source {
     std::shared_ptr<const Volume> owned;  ///< from a file
     const LiveVolume* live = nullptr;     ///< or the host's
     VolumeStatistics statistics;
-    std::uint64_t key = 0;  ///< of the file and how it was read, or of the host's object
+    std::uint64_t statistics_version = 0;  ///< of a host's volume when they were made
+    std::uint64_t key = 0;                 ///< of the file and how it was read, or of the host's object
 
     [[nodiscard]] const Volume& volume() const { return owned ? *owned : live->volume(); }
     [[nodiscard]] std::uint64_t version() const { return live == nullptr ? 1 : live->version(); }
