@@ -183,8 +183,8 @@ void run_filters(Lab& lab) {
                         .ceiling = linear.empty() ? "" : "linear",
                         .base = linear};
                 if (!gradient) {
-                    row.error = drawing.error();
-                    row.error_of = "Marschner-Lobb at 81 voxels (rms)";
+                    row.rms = drawing.error();
+                    row.error_of = "Marschner-Lobb at 81 voxels";
                 }
                 lab.add(std::move(row));
             }
