@@ -53,6 +53,7 @@ vec4 cast_ray(vec2 pixel) {
 #endif
     look_along(ray.world);
     State state = begin();
+    bool met = false;
 #ifdef JITTER
     float offset = jitter(ivec2(pixel));
 #else
@@ -75,11 +76,14 @@ vec4 cast_ray(vec2 pixel) {
         sub_volume_end = starts ? interval.x + u_sub_volume_depth : sub_volume_end;
         interval.y = min(interval.y, sub_volume_end);
 #endif
+        met = met || interval.x < interval.y;
         march(ray, interval, offset, state);
     }
+    // What misses the volume is left as it was, also where an X-ray would say that nothing was absorbed.
+    vec4 seen = met ? finish(state) : vec4(0.0);
 #ifdef BACKGROUND
-    return over_background(finish(state), pixel);
+    return over_background(seen, pixel);
 #else
-    return finish(state);
+    return seen;
 #endif
 }
