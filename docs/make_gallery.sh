@@ -36,5 +36,7 @@ picture mip volume.colour 'MR angiogram, maximum intensity' assets/scenes/mip.js
 picture isosurface volume.colour 'Skin and skull as surfaces, cut open' assets/scenes/isosurface.json
 picture labels volume.colour 'Segments, with a bleed' assets/scenes/labels.json
 picture xray volume.colour 'X-ray, exact line integrals' assets/scenes/xray.json
-picture window volume.colour 'Bone window of the same head, average along the rays' assets/scenes/head.json --set '/passes/0/parameters={"volume":{"file":"../volumes/head.mha"},"function":"average","transfer_function":{"window":{"width":1500,"level":0}}}'
-picture overlay volume.colour 'Blood flow as hue over the brain' assets/scenes/labels.json --set '/passes/0/parameters/overlay={"file":"../volumes/overlay.nrrd","strength":0.8}'
+picture axial slice.axial 'Axial slice, brain window: the bleed' assets/scenes/slices.json
+picture coronal slice.coronal 'Coronal slice' assets/scenes/slices.json
+picture sagittal slice.sagittal 'Sagittal slice' assets/scenes/slices.json
+picture overlay volume.colour 'Blood flow as hue over the brain' assets/scenes/labels.json --set '/passes/0/parameters/overlay={"file":"../volumes/overlay.nrrd","strength":0.8,"points":[{"value":8,"colour":[0,0.1,1],"opacity":0},{"value":20,"colour":[0,0.4,1],"opacity":1},{"value":50,"colour":[0,1,0.3],"opacity":1},{"value":80,"colour":[1,0.2,0],"opacity":1}]}'
