@@ -45,16 +45,18 @@ ClippedBox clipped_box(const glm::dvec3& min, const glm::dvec3& max, const glm::
     if (planes.empty()) {
         return {min, max};
     }
-    std::vector<glm::dvec4> walls;
+    std::array<glm::dvec4, 6 + most_clip_planes> all{};
+    std::size_t count = 0;
     for (int a = 0; a < 3; ++a) {
         glm::dvec4 low(0.0);
         low[a] = 1.0;
-        walls.push_back(low - glm::dvec4(0.0, 0.0, 0.0, min[a]));
-        walls.push_back(-low + glm::dvec4(0.0, 0.0, 0.0, max[a]));
+        all.at(count++) = low - glm::dvec4(0.0, 0.0, 0.0, min[a]);
+        all.at(count++) = -low + glm::dvec4(0.0, 0.0, 0.0, max[a]);
     }
     for (const ClipPlane& plane : planes) {
-        walls.push_back(in_local(plane.half_space(), local_to_world));
+        all.at(count++) = in_local(plane.half_space(), local_to_world);
     }
+    const std::span<const glm::dvec4> walls = std::span(all).first(count);
     // What is left is convex and lies inside the box around its corners, where three walls meet.
     ClippedBox box{glm::dvec3(1e300), glm::dvec3(-1e300)};
     const double slack = 1e-9 * (1.0 + glm::length(max - min));

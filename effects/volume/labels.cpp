@@ -52,7 +52,8 @@ void LabelParams::visit(ParamVisitor& v) {
 }
 
 bool LabelParams::has_ramps() const {
-    return std::ranges::any_of(looks(*this), [](const SegmentLook* look) { return !look->points.empty(); });
+    return !others.points.empty() ||
+           std::ranges::any_of(segments, [](const Segment& segment) { return !segment.look.points.empty(); });
 }
 
 void LabelParams::validate() const {

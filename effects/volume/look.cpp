@@ -111,19 +111,21 @@ std::vector<std::string> Look::defines(const LookParams& params, const Variant& 
 }
 
 std::string_view Look::load(const LookParams& params, Prepare& prepare) {
-    parameters_key_ = prepare.parameters_key();
+    if (parameters_key_ != prepare.parameters_key()) {
+        parameters_key_ = prepare.parameters_key();
+        label_source_ = source_of(params.labels.file, params.labels.host);
+        overlay_source_ = source_of(params.overlay.file, params.overlay.host);
+    }
     labels_ = nullptr;
     overlay_ = nullptr;
     if (params.labels.used()) {
-        labels_ =
-            load_source(prepare.assets(), source_of(params.labels.file, params.labels.host), prepare.frame());
+        labels_ = load_source(prepare.assets(), label_source_, prepare.frame());
         if (!labels_) {
             return "the host gives no label volume of this name";
         }
     }
     if (params.overlay.used()) {
-        overlay_ = load_source(prepare.assets(), source_of(params.overlay.file, params.overlay.host),
-                               prepare.frame());
+        overlay_ = load_source(prepare.assets(), overlay_source_, prepare.frame());
         if (!overlay_) {
             return "the host gives no overlay of this name";
         }

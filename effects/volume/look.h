@@ -87,6 +87,8 @@ class Look {
         std::uint64_t key = 0;
     };
     std::uint64_t parameters_key_ = 0;
+    SourceParams label_source_;
+    SourceParams overlay_source_;
     std::shared_ptr<const Source> labels_;
     std::shared_ptr<const Source> overlay_;
     Made label_voxels_;

@@ -62,6 +62,9 @@ class RayCastEffect final : public Effect {
     TransferFunction function_;
     std::shared_ptr<Bricks> bricks_;
     SkipMap skip_map_;
+    std::vector<StoredRange> visible_;  ///< what visible() and smooth_rule() gave
+    SmoothRule smooth_;
+    std::uint64_t visible_key_ = 0;
     glm::dmat4 texture_to_world_{1.0};
     glm::dvec3 box_min_{0.0};
     glm::dvec3 box_max_{1.0};

@@ -73,8 +73,16 @@ bool RayCastEffect::find_bricks(Prepare& prepare) {
     if (!params_.sampling.skip) {
         return true;
     }
-    const std::vector<StoredRange> ranges = visible();
-    if (ranges.empty() && projects()) {
+    // The rule knows of the transfer function alone.
+    const bool adaptive =
+        params_.sampling.tolerance > 0.0 && !projects() && !params_.look.used(variant_.look);
+    const std::uint64_t visible_key = Hash().add(parameters_key_).add(source_->version()).value();
+    if (visible_key_ != visible_key) {
+        visible_ = visible();
+        smooth_ = adaptive ? smooth_rule() : SmoothRule{};
+        visible_key_ = visible_key;
+    }
+    if (visible_.empty() && projects()) {
         return true;
     }
     // A cell or slab belongs to the brick of its middle; reconstruction needs voxels beyond.
@@ -83,10 +91,7 @@ bool RayCastEffect::find_bricks(Prepare& prepare) {
         static_cast<int>(std::ceil(reach(params_.sampling, lattice_) + filter.support_voxels()));
     bricks_ = load_bricks(prepare.assets(), *sampled_, sampled_channel_, brick_size, border);
     const std::uint64_t key = Hash().add(parameters_key_).add(bricks_.get()).add(bricks_->version).value();
-    // The rule knows of the transfer function alone.
-    const bool adaptive =
-        params_.sampling.tolerance > 0.0 && !projects() && !params_.look.used(variant_.look);
-    skip_map_.update(bricks_->grid, ranges, crop_, adaptive ? smooth_rule() : SmoothRule{}, key,
+    skip_map_.update(bricks_->grid, visible_, crop_, smooth_, key,
                      filter.overshoot() + overshoot(params_.sampling));
     if (skip_map_.occupancy() == 0.0) {
         return false;

@@ -1,7 +1,10 @@
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
+#include <string_view>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -25,9 +28,11 @@ class WarmFrameTest : public testing::TestWithParam<HostStatePolicy> {
         renderer_->set_scene(load_scene(scenes / "angiography.json", small));
     }
 
+    void set_scene(std::string_view text) { renderer_->set_scene(parse_scene(text, "test.json")); }
     /// Allocations of one frame.
-    std::size_t allocations(double time_s) {
+    std::size_t allocations(double time_s, std::span<const HostVolume> volumes = {}) {
         Frame frame = renderer_->still(time_s);
+        frame.volumes = volumes;
         frame.host_state = GetParam();
         const std::size_t before = allocation_count();
         report_ = &renderer_->render(frame);
@@ -62,6 +67,43 @@ TEST_P(WarmFrameTest, ACachedFrameAllocatesNothing) {
     (void)allocations(1.5);
     EXPECT_EQ(allocations(1.5), 0U);
     EXPECT_EQ(drawn(), 0U);
+}
+
+/// Bytes about the world's origin that differ from voxel to voxel.
+Volume bytes_of_noise(int n, double spacing_mm) {
+    Volume volume;
+    volume.grid.dims = glm::ivec3(n);
+    volume.grid.spacing_mm = glm::dvec3(spacing_mm);
+    volume.grid.origin_mm = glm::dvec3(-0.5 * spacing_mm * (n - 1));
+    for (int i = 0; i < n * n * n; ++i) {
+        volume.voxels.push_back(static_cast<std::byte>(i * 37 % 251 / (1 + i % 7)));
+    }
+    return volume;
+}
+
+TEST_P(WarmFrameTest, AMovedVolumeWithEverythingInItAllocatesNothing) {
+    const LiveVolume head(bytes_of_noise(24, 4.0));
+    const LiveVolume labels(bytes_of_noise(12, 8.0));
+    const std::array<HostVolume, 2> given{HostVolume{"head", &head},
+                                          HostVolume{"another volume that gives labels", &labels}};
+    set_scene(R"({"version": 1, "resolution": [64, 64], "outputs": ["volume.colour"],
+        "camera": {"eye_mm": [0, -300, 60], "orbit_deg_per_s": 20},
+        "passes": [{"name": "cast", "effect": "volume.ray_cast", "parameters": {
+            "volume": {"host": "head"},
+            "transfer_function": {"points": [{"value": 40, "opacity": 0}, {"value": 200, "opacity": 0.1}]},
+            "shading": {"enabled": true, "light_volume": {"ambient_occlusion": 0.5}},
+            "labels": {"host": "another volume that gives labels",
+                       "segments": [{"id": 3, "points": [{"value": 9, "opacity": 0.2}]}]},
+            "overlay": {"host": "another volume that gives labels"},
+            "clip_planes": [{"normal": [1, 2, 0.5]}, {"normal": [0, 1, 0], "point_mm": [0, -20, 0]}]}}]})");
+    double time_s = 1.5;
+    for (int i = 0; i < 3; ++i) {
+        (void)allocations(time_s += 0.01, given);
+    }
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_EQ(allocations(time_s += 0.01, given), 0U) << "at " << time_s << " s";
+        EXPECT_EQ(drawn(), 1U);
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(HostState, WarmFrameTest,
