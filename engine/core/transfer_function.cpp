@@ -135,7 +135,10 @@ glm::dvec4 evaluate(const TransferFunction& function, double value) {
 
 double extinction(double opacity, double reference_length_mm) {
     constexpr double most = 1.0 - 0x1p-24;
-    return opacity > 0.0 ? -std::log1p(-std::min(opacity, most)) / reference_length_mm : 0.0;
+    constexpr double most_extinction = 1e30;  // times any length that is seen, a float still holds it
+    return opacity > 0.0
+               ? std::min(-std::log1p(-std::min(opacity, most)) / reference_length_mm, most_extinction)
+               : 0.0;
 }
 
 TransferFunction make_window(const WindowLevel& window) {

@@ -67,7 +67,7 @@ struct TransferFunction {
 /// Colour and opacity at a value; at a step, the right side's. NaN: transparent.
 [[nodiscard]] glm::dvec4 evaluate(const TransferFunction& function, double value);
 /// Extinction [1/mm] of an opacity per reference length: -log1p(-A0) / reference_length. Opacity 1 is taken
-/// as 1 - 2^-24, so that it stays finite.
+/// as 1 - 2^-24, so that it stays finite; at most 1e30.
 [[nodiscard]] double extinction(double opacity, double reference_length_mm);
 
 /// Window/level: grey ramp from level - width / 2 (black) to level + width / 2 (white), opacity the same
