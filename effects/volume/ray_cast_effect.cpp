@@ -51,6 +51,10 @@ void RayCastEffect::validate() const {
         throw Error(ErrorCode::scene, "/sampling/scheme",
                     "preintegrated takes one transfer function for the whole slab; segments have their own");
     }
+    if (params_.isosurface.values.size() > most_iso_values) {
+        throw Error(ErrorCode::scene, "/isosurface/values",
+                    "at most " + std::to_string(most_iso_values) + " surfaces");
+    }
     params_.look.validate();
 }
 
@@ -136,8 +140,7 @@ Work RayCastEffect::prepare(Prepare& prepare) {
         return Work::idle("the host gives no volume of this name");
     }
     // A host may put a volume of another grid in its place.
-    const bool changed =
-        parameters_key_ != prepare.parameters_key() || source_version_ != source_->version();
+    const bool changed = parameters_key_ != prepare.parameters_key() || source_version_ != source_->version();
     const bool coefficients = params_.sampling.reconstruction.uses_coefficients();
     sampled_channel_ = coefficients ? 0 : params_.volume.channel;
     sampled_ = coefficients ? load_coefficients(prepare.assets(), *source_, params_.volume.channel) : source_;
@@ -152,6 +155,9 @@ Work RayCastEffect::prepare(Prepare& prepare) {
     if (params_.transfer_function.empty() && variant_.function != RayFunction::xray &&
         variant_.function != RayFunction::accumulate && variant_.function != RayFunction::isosurface) {
         return Work::idle("there is no transfer function");
+    }
+    if (variant_.function == RayFunction::isosurface && params_.isosurface.values.empty()) {
+        return Work::idle("there is no iso value");
     }
     if (!invertible(texture_to_world_)) {
         prepare.log().fault("volume.singular", "the volume's placement is singular; it is not drawn");
@@ -265,7 +271,7 @@ void RayCastEffect::draw(const Pass& pass) {
         program.set("u_threshold", static_cast<float>(texel(*params_.threshold)));
     }
     gpu.set(program);
-    pass.bind(program, "u_volume", gpu.texture(), params_.sampling.reconstruction.texture_filter());
+    pass.bind(program, "u_volume", gpu.texture(), params_.sampling.reconstruction.texture_filter(function_.nearest));
     pass.bind(program, "u_transfer", *table_, gl::Filter::nearest);
     if (params_.sub_volume) {
         program.set("u_sub_volume_depth", static_cast<float>(params_.sub_volume->depth_mm));

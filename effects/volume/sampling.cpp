@@ -75,12 +75,14 @@ Lattice make_lattice(const SamplingParams& params, const glm::dmat4& texture_to_
                                      " slabs through the volume; it is made longer");
         lattice.slab_mm = diagonal / most_slabs;
     }
+    // No ray is longer than the volume's sides together: whatever the step, a float holds the slab.
+    lattice.slab_mm = std::min(lattice.slab_mm, diagonal);
     // The texture direction of a world direction is at most as long as the inverse's largest row says.
     const glm::dmat3 to_texture = glm::inverse(glm::dmat3(texture_to_world));
     for (int a = 0; a < 3; ++a) {
         const glm::dvec3 row(to_texture[0][a], to_texture[1][a], to_texture[2][a]);
-        const double voxels =
-            std::min(lattice.slab_mm, diagonal) * glm::length(row) * static_cast<double>(dims[a]);
+        const auto all = static_cast<double>(dims[a]);
+        const double voxels = std::min(all, lattice.slab_mm * glm::length(row) * all);
         lattice.slab_voxels = std::max(a == 0 ? 0.0 : lattice.slab_voxels, voxels);
     }
     const int cells = dims.x + dims.y + dims.z + 8;
