@@ -17,6 +17,9 @@ namespace viscera::volume {
 namespace {
 
 constexpr int blue_noise_size = 32;
+// On an H200, whose compute shaders take 300 billion samples/s, skipping takes 0.7 times as long at 5 %
+// occupied bricks, 1.8 times as long at 25 % (viscera bench skipping).
+constexpr double compute_skips_below = 0.1;
 
 RayFunction function_for(Technique technique) {
     switch (technique) {
@@ -232,6 +235,12 @@ void RayCastEffect::draw(const Pass& pass) {
         table_key_ = table_key;
     }
     variant_.compute = pass.compute("colour");
+    // Where samples cost a fraction of what it costs to find out that they are not needed, only the emptiest
+    // volumes gain; the picture is the same.
+    if (variant_.compute && variant_.function != RayFunction::isosurface &&
+        skip_map_.occupancy() > compute_skips_below) {
+        variant_.skipping = Skipping::none;
+    }
     const auto variant = std::ranges::find(variants_, variant_);
     const gl::Program& program = pass.use(static_cast<std::size_t>(variant - variants_.begin()));
     const RayFrame frame = make_ray_frame(pass.frame().eye(), texture_to_world_);
@@ -271,7 +280,8 @@ void RayCastEffect::draw(const Pass& pass) {
         program.set("u_threshold", static_cast<float>(texel(*params_.threshold)));
     }
     gpu.set(program);
-    pass.bind(program, "u_volume", gpu.texture(), params_.sampling.reconstruction.texture_filter(function_.nearest));
+    pass.bind(program, "u_volume", gpu.texture(),
+              params_.sampling.reconstruction.texture_filter(function_.nearest));
     pass.bind(program, "u_transfer", *table_, gl::Filter::nearest);
     if (params_.sub_volume) {
         program.set("u_sub_volume_depth", static_cast<float>(params_.sub_volume->depth_mm));
