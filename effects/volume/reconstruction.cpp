@@ -7,11 +7,16 @@
 namespace viscera::volume {
 namespace {
 
-constexpr std::array<std::string_view, 7> filter_names{
-    "nearest", "linear", "linear_fp32", "bspline", "bspline_fp32", "catmull_rom", "catmull_rom_fp32"};
-constexpr std::array<std::string_view, 7> filter_defines{"FILTER_NEAREST",         "",
-                                                         "FILTER_LINEAR_FP32",     "FILTER_BSPLINE",
-                                                         "FILTER_BSPLINE_FP32",    "FILTER_CATMULL_ROM",
+constexpr std::array<std::string_view, 8> filter_names{"automatic",   "nearest",         "linear",
+                                                       "linear_fp32", "bspline",         "bspline_fp32",
+                                                       "catmull_rom", "catmull_rom_fp32"};
+constexpr std::array<std::string_view, 8> filter_defines{"",
+                                                         "FILTER_NEAREST",
+                                                         "",
+                                                         "FILTER_LINEAR_FP32",
+                                                         "FILTER_BSPLINE",
+                                                         "FILTER_BSPLINE_FP32",
+                                                         "FILTER_CATMULL_ROM",
                                                          "FILTER_CATMULL_ROM_FP32"};
 constexpr std::array<std::string_view, 3> gradient_names{"automatic", "central", "analytic"};
 
@@ -40,7 +45,8 @@ void ReconstructionParams::visit(ParamVisitor& v) {
     v.field(
         {.name = "filter",
          .doc = "How the volume is reconstructed between its voxels; fp32: with weights of full precision "
-                "instead of the texture unit's."},
+                "instead of the texture unit's; automatic: linear, or nearest where the transfer function's "
+                "file asks for it."},
         filter);
     v.field({.name = "prefilter",
              .doc = "B-splines pass through the voxels (fourth order) instead of smoothing them."},
@@ -59,7 +65,10 @@ bool ReconstructionParams::is_tricubic() const {
     return is_cubic(filter);
 }
 
-gl::Filter ReconstructionParams::texture_filter() const {
+gl::Filter ReconstructionParams::texture_filter(bool nearest_wanted) const {
+    if (filter == ReconstructionFilter::automatic) {
+        return nearest_wanted ? gl::Filter::nearest : gl::Filter::linear;
+    }
     const bool by_texture_unit = filter == ReconstructionFilter::linear ||
                                  filter == ReconstructionFilter::bspline ||
                                  filter == ReconstructionFilter::catmull_rom;

@@ -14,6 +14,7 @@ namespace viscera::volume {
 /// on most GPUs; those of *_fp32 have full precision. bspline and bspline_fp32 are tricubic B-splines,
 /// catmull_rom and catmull_rom_fp32 Keys' tricubic with a = -1/2.
 enum class ReconstructionFilter {
+    automatic,  ///< linear, or nearest where the transfer function's preset asks for it
     nearest,
     linear,
     linear_fp32,
@@ -30,7 +31,7 @@ enum class GradientKind { automatic, central, analytic };
 
 /// How a volume is reconstructed between its voxels: glsl/volume/sample.glsl.
 struct ReconstructionParams {
-    ReconstructionFilter filter = ReconstructionFilter::linear;
+    ReconstructionFilter filter = ReconstructionFilter::automatic;
     bool prefilter = true;
     GradientKind gradient = GradientKind::automatic;
 
@@ -40,8 +41,8 @@ struct ReconstructionParams {
     [[nodiscard]] bool uses_coefficients() const;
     /// Whether the field is of a higher degree than three along a ray through a cell.
     [[nodiscard]] bool is_tricubic() const;
-    /// How the texture unit filters.
-    [[nodiscard]] gl::Filter texture_filter() const;
+    /// How the texture unit filters. `nearest_wanted`: by the transfer function's preset.
+    [[nodiscard]] gl::Filter texture_filter(bool nearest_wanted = false) const;
     /// What a brick's range must include: the farthest voxel that counts lies less than this beyond the place
     /// that is sampled, plus half a voxel [voxels].
     [[nodiscard]] double support_voxels() const;

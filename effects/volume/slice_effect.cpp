@@ -163,7 +163,7 @@ void SliceEffect::draw(const Pass& pass) {
     }
     const gl::Program& program = pass.use(gpu.is_atlas() ? 1 : 0);
     gpu.set(program);
-    pass.bind(program, "u_volume", gpu.texture(), params_.sampling.texture_filter());
+    pass.bind(program, "u_volume", gpu.texture(), params_.sampling.texture_filter(function_.nearest));
     pass.bind(program, "u_transfer", *table_, gl::Filter::nearest);
     program.set("u_transfer_place", glm::vec2(table_place_));
     set_plane(pass, program);

@@ -95,6 +95,9 @@ std::vector<ParameterSet> parameter_sets() {
     const auto cast = [](const std::string& parameters) {
         return ParameterSet{"volume.ray_cast", R"({"volume": {"host": "host"}, )" + parameters + "}"};
     };
+    const auto slice = [](const std::string& parameters) {
+        return ParameterSet{"volume.slice", R"({"volume": {"host": "host"}, )" + parameters + "}"};
+    };
     return {
         cast(R"("transfer_function": {"file": "any.json"})"),
         cast(R"("shading": {"enabled": true, "lights": [{"direction": [0, 0, 1]}], "two_sided": false})"),
@@ -105,6 +108,10 @@ std::vector<ParameterSet> parameter_sets() {
                 "overlay": {"host": "overlay"}, "transfer_function": {"interpolate": true},
                 "clip_planes": [{}, {}, {}])"),
         cast(R"("labels": {"host": "labels"}, "shading": {"light_volume": {"ambient_occlusion": 1}})"),
+        cast(R"("sub_volume": {}, "clip_planes": [{}])"),
+        slice(R"("slab": {"function": "mip"}, "sampling": {"filter": "bspline"})"),
+        slice(R"("slab": {"function": "minip"}, "view": "camera", "sampling": {"filter": "linear_fp32"})"),
+        slice(R"("view": "camera")"),
         cast(R"("sampling": {"filter": "nearest"}, "shading": {"enabled": true})"),
         cast(R"("sampling": {"filter": "linear", "gradient": "analytic"}, "shading": {"enabled": true})"),
         cast(
