@@ -73,7 +73,9 @@ std::vector<Quality> judge(Lab& lab, const VolumeScene& scene, std::span<const J
         }
     }
     Stage stage(lab, scene.json(variants, "rgba32f", scale), {.by_pass = false});
-    (void)stage.renderer().render(stage.renderer().still(0.0));
+    Frame frame = stage.renderer().still(0.0);
+    frame.host_state = HostStatePolicy::host_resets;  // what an earlier renderer left in use is gone
+    (void)stage.renderer().render(frame);
     std::vector<Quality> qualities;
     Image exact;
     std::size_t next = 0;
