@@ -52,8 +52,7 @@ struct Quality {
     double samples_per_pixel = 0.0;
 };
 /// In float targets, at `scale` of the lab's resolution, so that exact pictures come in time. `exact`:
-/// changes to each variant that make it exact; null: the last exact picture will do. `edit` gives host
-/// volumes.
+/// changes to each variant that make it exact; null: the last exact picture will do.
 struct Judged {
     Variant variant;
     nlohmann::json exact;
