@@ -139,6 +139,8 @@ Scene World::everything() const {
     {"name": "blush", "effect": "filter.gaussian", "parameters": {"axis": "y", "sigma": 0.1},
      "targets": {"source": "painter.main", "blurred": "contrast.capillary"}},
     {"name": "surface", "effect": "mesh.surface", "parameters": {"mesh": "tube.obj"}},
+    {"name": "slice", "effect": "volume.slice",
+     "parameters": {"volume": {"file": "ball.mha"}, "transfer_function": {"window": {"width": 100, "level": 50}}}},
     {"name": "entry", "effect": "volume.entry", "parameters": {"volume": {"file": "ball.mha"}}},
     {"name": "exit", "effect": "volume.exit", "parameters": {"volume": {"file": "ball.mha"}}},
     {"name": "cast", "effect": "volume.ray_cast",
@@ -148,7 +150,8 @@ Scene World::everything() const {
   ],
   "targets": {"contrast.capillary": {"scale": 0.5}},
   "outputs": ["final", "contrast.distance_view", "contrast.mask", "contrast.reflux", "contrast.extravasate",
-              "alone.cloud", "alone.distance", "depth.main", "painter.main", "host.main", "volume.colour"]
+              "alone.cloud", "alone.distance", "depth.main", "painter.main", "host.main", "volume.colour",
+              "volume.slice"]
 })json");
 }
 
