@@ -9,6 +9,7 @@
 #include "effects/filter/gaussian_effect.h"
 #include "effects/mesh/surface_effect.h"
 #include "effects/picture/image_effect.h"
+#include "effects/tissue/bake_effect.h"
 #include "effects/volume/limits_effect.h"
 #include "effects/volume/ray_cast_effect.h"
 #include "effects/volume/slice_effect.h"
@@ -51,6 +52,8 @@ void register_all(Registry& registry) {
                  [] { return std::make_unique<volume::SliceEffect>(); });
     registry.add("mesh.surface", "Opaque meshes, with their depth.",
                  [] { return std::make_unique<mesh::SurfaceEffect>(); });
+    registry.add("tissue.bake", "A surface in texture space: places, normals, scale and seams.",
+                 [] { return std::make_unique<tissue::BakeEffect>(); });
     registry.add("filter.gaussian", "One direction of a Gaussian blur.",
                  [] { return std::make_unique<filter::GaussianEffect>(); });
     registry.add("picture.image", "A picture file as a target.",

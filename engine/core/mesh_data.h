@@ -32,7 +32,7 @@ struct MeshData {
     std::string name;
     std::vector<glm::vec3> positions;    ///< [mm]
     std::vector<glm::vec3> normals;      ///< unit length, one per vertex, or empty
-    std::vector<glm::vec2> uvs;          ///< one per vertex, or empty
+    std::vector<glm::vec2> uvs;          ///< one per vertex, or empty; v from the bottom of a picture
     std::vector<std::uint32_t> indices;  ///< 3 per triangle
     std::vector<VertexScalars> scalars;
 

@@ -16,10 +16,11 @@ struct Constant {
     Attribute attribute;
     std::array<float, 4> value;
 };
-constexpr std::array<Constant, 4> constants{{{Attribute::normal, {0.0F, 0.0F, 0.0F, 0.0F}},
+constexpr std::array<Constant, 5> constants{{{Attribute::normal, {0.0F, 0.0F, 0.0F, 0.0F}},
                                              {Attribute::uv, {0.0F, 0.0F, 0.0F, 0.0F}},
                                              {Attribute::scalar, {0.0F, 0.0F, 0.0F, 0.0F}},
-                                             {Attribute::colour, {1.0F, 1.0F, 1.0F, 1.0F}}}};
+                                             {Attribute::colour, {1.0F, 1.0F, 1.0F, 1.0F}},
+                                             {Attribute::picture_uv, {0.0F, 0.0F, 0.0F, 0.0F}}}};
 
 constexpr std::array<float, 4 * constants.size()> constant_values = [] {
     std::array<float, 4 * constants.size()> values{};
@@ -100,6 +101,9 @@ void Mesh::update_normals(std::span<const glm::vec3> normals) {
 }
 void Mesh::update_uvs(std::span<const glm::vec2> uvs) {
     update(Attribute::uv, 2, uvs.size(), std::as_bytes(uvs), "texture coordinates");
+}
+void Mesh::update_picture_uvs(std::span<const glm::vec2> uvs) {
+    update(Attribute::picture_uv, 2, uvs.size(), std::as_bytes(uvs), "texture coordinates");
 }
 void Mesh::update_colours(std::span<const glm::vec4> colours) {
     update(Attribute::colour, 4, colours.size(), std::as_bytes(colours), "colours");

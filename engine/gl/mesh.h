@@ -11,11 +11,12 @@
 
 namespace viscera::gl {
 
-/// Where vertex shaders find their inputs; Program binds the names "a_position" ... to these.
-enum class Attribute : GLuint { position = 0, normal = 1, uv = 2, scalar = 3, colour = 4 };
+/// Where vertex shaders find their inputs; Program binds the names "a_position" ... to these. picture_uv:
+/// where the mesh's pictures lie, when uv is an atlas made for it.
+enum class Attribute : GLuint { position = 0, normal = 1, uv = 2, scalar = 3, colour = 4, picture_uv = 5 };
 
 /// A triangle mesh in GPU memory, each attribute in a buffer of its own so that it can be replaced alone.
-/// Attributes that the mesh lacks read as constants (normal 0, uv 0, scalar 0, colour 1), not as the
+/// Attributes that the mesh lacks read as constants (normal 0, uvs 0, scalar 0, colour 1), not as the
 /// context's current values, which may be a host's.
 class Mesh {
   public:
@@ -32,6 +33,7 @@ class Mesh {
     void update_positions(std::span<const glm::vec3> positions);
     void update_normals(std::span<const glm::vec3> normals);
     void update_uvs(std::span<const glm::vec2> uvs);
+    void update_picture_uvs(std::span<const glm::vec2> uvs);
     void update_colours(std::span<const glm::vec4> colours);
     /// Replaces or adds the scalar `name`.
     void update_scalars(std::string_view name, std::span<const float> values);

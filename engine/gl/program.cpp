@@ -18,11 +18,12 @@ struct AttributeName {
     Attribute attribute;
     const char* name;
 };
-constexpr std::array<AttributeName, 5> attribute_names{{{Attribute::position, "a_position"},
+constexpr std::array<AttributeName, 6> attribute_names{{{Attribute::position, "a_position"},
                                                         {Attribute::normal, "a_normal"},
                                                         {Attribute::uv, "a_uv"},
                                                         {Attribute::scalar, "a_scalar"},
-                                                        {Attribute::colour, "a_color"}}};
+                                                        {Attribute::colour, "a_color"},
+                                                        {Attribute::picture_uv, "a_picture_uv"}}};
 
 // Of the textures that a Texture can be; any other sampler could never be bound.
 constexpr std::array<GLenum, 8> sampler_types{

@@ -13,8 +13,9 @@
 
 namespace viscera::gl {
 
-/// A linked shader program. Vertex inputs named a_position, a_normal, a_uv, a_scalar and a_color have the
-/// locations that Mesh fills; each sampler has a texture unit of its own, given at link time.
+/// A linked shader program. Vertex inputs named a_position, a_normal, a_uv, a_scalar, a_color and
+/// a_picture_uv have the locations that Mesh fills; each sampler has a texture unit of its own, given at link
+/// time.
 ///
 /// The setters act on the program in use: call use() first. Nothing is allocated. A name that no shader uses
 /// is ignored, because compilers drop unused uniforms; has_uniform() tells, and a type that does not fit is

@@ -225,7 +225,8 @@ MeshData convert(const tinygltf::Model& model, const tinygltf::Primitive& primit
     }
     const std::vector<double> uvs = attribute("TEXCOORD_0");
     for (std::size_t v = 0; v < uvs.size() / 2; ++v) {
-        mesh.uvs.emplace_back(uvs[2 * v], uvs[2 * v + 1]);
+        // glTF counts v from the top of a picture, MeshData from the bottom.
+        mesh.uvs.emplace_back(uvs[2 * v], 1.0 - uvs[2 * v + 1]);
     }
     for (const auto& [name, index] : primitive.attributes) {
         if (name.starts_with("_") &&

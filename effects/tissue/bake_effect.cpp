@@ -1,0 +1,161 @@
+#include "effects/tissue/bake_effect.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "engine/core/hash.h"
+#include "engine/core/log.h"
+#include "engine/gl/texture.h"
+#include "engine/runtime/pass.h"
+
+namespace viscera::tissue {
+namespace {
+
+/// Rows of the textures that hold vertices and triangles.
+constexpr std::size_t row_length = 1024;
+
+std::size_t rows_for(std::size_t count) {
+    return std::max<std::size_t>((count + row_length - 1) / row_length, 1);
+}
+
+}  // namespace
+
+/// What the shader reads.
+struct BakeEffect::Gpu {
+    std::optional<gl::Texture> vertices;
+    std::optional<gl::Texture> triangles;
+    std::optional<gl::Texture> map;
+    std::shared_ptr<const TexelMap> map_of;
+    std::uint64_t mesh_key = 0;
+    std::uint64_t content_key = 0;
+};
+
+void BakeParams::visit(ParamVisitor& v) {
+    v.field({.name = "mesh", .doc = "The surface.", .required = true}, mesh);
+    v.field({.name = "size", .doc = "Texels along each side.", .unit = "px", .min = 16, .max = 8192}, size);
+}
+
+BakeEffect::BakeEffect() : programs_{{"common/fullscreen.vert", "tissue/bake.frag", {}}} {}
+BakeEffect::~BakeEffect() = default;
+
+std::vector<Port> BakeEffect::ports() const {
+    const SizeRule size{.width = params_.size, .height = params_.size};
+    return {{.name = "position",
+             .access = Access::write,
+             .target = "tissue.position",
+             .doc = "Place in the world [mm]; alpha 1 inside a chart, 0.5 in its gutter, 0 where nothing is.",
+             .format = PixelFormat::rgba32f,
+             .size = size,
+             .overwrites = true},
+            {.name = "normal",
+             .access = Access::write,
+             .target = "tissue.normal",
+             .doc = "Unit normal in the world, and alpha as position has it.",
+             .format = PixelFormat::rgba16f,
+             .size = size,
+             .optional = true,
+             .overwrites = true},
+            {.name = "metric",
+             .access = Access::write,
+             .target = "tissue.metric",
+             .doc = "Length of a texel step in u and in v [mm], the cosine between them, and a texel's area "
+                    "[mm^2].",
+             .format = PixelFormat::rgba32f,
+             .size = size,
+             .optional = true,
+             .overwrites = true},
+            {.name = "seam",
+             .access = Access::write,
+             .target = "tissue.seam",
+             .doc = "A texel's own UV inside charts; in gutters the UV where the surface goes on; (-1, -1) "
+                    "where it does not.",
+             .format = PixelFormat::rg32f,
+             .size = size,
+             .clear = {-1.0F, -1.0F, 0.0F, 0.0F},
+             .optional = true,
+             .overwrites = true}};
+}
+
+Work BakeEffect::prepare(Prepare& prepare) {
+    if (!mesh_ || parameters_key_ != prepare.parameters_key()) {
+        parameters_key_ = prepare.parameters_key();
+        mesh_ = SurfaceMesh::load(prepare.assets(), params_.mesh);
+        to_world_ = placement_matrix(params_.mesh.placement, mesh_->centre());
+        map_.reset();
+    }
+    mesh_->move(prepare.frame().values, params_.mesh.host_positions, prepare.log());
+    if (mesh_->data().indices.empty()) {
+        return Work::idle("the mesh has no triangles");
+    }
+    if (!invertible(to_world_)) {
+        prepare.log().fault("tissue.singular", "the mesh's placement is singular; nothing is baked");
+        return Work::idle("the mesh's placement is singular");
+    }
+    if (!map_) {
+        const int size = prepare.size("position").x;
+        map_ = prepare.assets().shared<TexelMap>(Hash().add(mesh_->key()).add(size).value(), [&] {
+            return std::make_shared<TexelMap>(make_texel_map(mesh_->data(), size));
+        });
+    }
+    content_key_ = Hash().add(parameters_key_).add(mesh_->shape_key()).value();
+    return Work::all(content_key_);
+}
+
+void BakeEffect::fill_vertices() {
+    const MeshData& mesh = mesh_->data();
+    // A covector: turned by the inverse transpose, so that it stays on its side of a mirrored surface.
+    const glm::dmat3 normal_to_world = glm::transpose(glm::inverse(glm::dmat3(to_world_)));
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+        const glm::vec3 place(to_world_ * glm::dvec4(mesh.positions[v], 1.0));
+        const glm::dvec3 normal = normal_to_world * glm::dvec3(mesh.normals[v]);
+        const double length = glm::length(normal);
+        vertices_[2 * v] = {place, mesh.uvs[v].x};
+        vertices_[2 * v + 1] = {length > 0.0 ? glm::vec3(normal / length) : glm::vec3(0.0F), mesh.uvs[v].y};
+    }
+}
+
+void BakeEffect::draw(const Pass& pass) {
+    if (!gpu_) {
+        gpu_ = std::make_unique<Gpu>();
+    }
+    const MeshData& mesh = mesh_->data();
+    if (gpu_->mesh_key != mesh_->key()) {
+        gpu_->mesh_key = mesh_->key();
+        gpu_->content_key = 0;
+        const std::size_t vertex_rows = rows_for(2 * mesh.positions.size());
+        const std::size_t triangle_rows = rows_for(mesh.triangle_count());
+        vertices_.assign(vertex_rows * row_length, glm::vec4(0.0F));
+        gpu_->vertices =
+            gl::Texture::make_2d(pass.gl(), static_cast<int>(row_length), static_cast<int>(vertex_rows),
+                                 PixelFormat::rgba32f, "vertices of a bake");
+        gpu_->triangles =
+            gl::Texture::make_2d(pass.gl(), static_cast<int>(row_length), static_cast<int>(triangle_rows),
+                                 PixelFormat::rgba32f, "triangles of a bake");
+        // Numbers below 2^24 are whole in a float.
+        std::vector<glm::vec4> triangles(triangle_rows * row_length, glm::vec4(0.0F));
+        for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+            triangles[t] = {mesh.indices[3 * t], mesh.indices[3 * t + 1], mesh.indices[3 * t + 2], 0.0F};
+        }
+        gpu_->triangles->upload(std::as_bytes(std::span(triangles)));
+    }
+    if (gpu_->content_key != content_key_) {
+        gpu_->content_key = content_key_;
+        fill_vertices();
+        gpu_->vertices->upload(std::as_bytes(std::span(vertices_)));
+    }
+    if (gpu_->map_of != map_) {
+        gpu_->map_of = map_;
+        gpu_->map =
+            gl::Texture::make_2d(pass.gl(), map_->size, map_->size, PixelFormat::rgba32f, "texels of a bake");
+        gpu_->map->upload(std::as_bytes(std::span(map_->texels)));
+    }
+    const gl::Program& program = pass.use(0);
+    pass.bind(program, "u_map", *gpu_->map, gl::Filter::nearest);
+    pass.bind(program, "u_vertices", *gpu_->vertices, gl::Filter::nearest);
+    pass.bind(program, "u_triangles", *gpu_->triangles, gl::Filter::nearest);
+    program.set("u_size", static_cast<float>(map_->size));
+    pass.draw_fullscreen();
+}
+
+}  // namespace viscera::tissue

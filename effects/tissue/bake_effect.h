@@ -1,0 +1,46 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "effects/tissue/texel_map.h"
+#include "engine/runtime/effect.h"
+#include "engine/runtime/surface_mesh.h"
+
+namespace viscera::tissue {
+
+struct BakeParams {
+    SurfaceMeshParams mesh;
+    int size = 512;
+
+    void visit(ParamVisitor& v);
+};
+
+/// A surface in texture space: where each texel lies in the world, its normal and scale, and where the
+/// surface goes on beyond the border of a chart.
+class BakeEffect final : public Effect {
+  public:
+    BakeEffect();
+    ~BakeEffect() override;
+    void visit(ParamVisitor& visitor) override { params_.visit(visitor); }
+    [[nodiscard]] std::vector<Port> ports() const override;
+    [[nodiscard]] std::span<const ProgramDesc> programs() const override { return programs_; }
+    [[nodiscard]] Work prepare(Prepare& prepare) override;
+    void draw(const Pass& pass) override;
+
+  private:
+    struct Gpu;
+    void fill_vertices();
+
+    BakeParams params_;
+    std::vector<ProgramDesc> programs_;
+    std::uint64_t parameters_key_ = 0;
+    std::shared_ptr<SurfaceMesh> mesh_;
+    std::shared_ptr<const TexelMap> map_;
+    glm::dmat4 to_world_{1.0};
+    std::uint64_t content_key_ = 0;
+    std::vector<glm::vec4> vertices_;  ///< two per vertex: world position and u, world normal and v
+    std::unique_ptr<Gpu> gpu_;
+};
+
+}  // namespace viscera::tissue
