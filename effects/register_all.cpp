@@ -8,6 +8,8 @@
 #include "effects/contrast/summarize_effect.h"
 #include "effects/filter/gaussian_effect.h"
 #include "effects/mesh/surface_effect.h"
+#include "effects/organ/depth_of_field_effect.h"
+#include "effects/organ/surface_effect.h"
 #include "effects/picture/image_effect.h"
 #include "effects/tissue/bake_effect.h"
 #include "effects/volume/limits_effect.h"
@@ -54,6 +56,10 @@ void register_all(Registry& registry) {
                  [] { return std::make_unique<mesh::SurfaceEffect>(); });
     registry.add("tissue.bake", "A surface in texture space: places, normals, scale and seams.",
                  [] { return std::make_unique<tissue::BakeEffect>(); });
+    registry.add("organ.surface", "An organ with burns, blood, cuts and relief, or a membrane before it.",
+                 [] { return std::make_unique<organ::SurfaceEffect>(); });
+    registry.add("organ.depth_of_field", "Blurs a picture by the blurriness that organs leave in its alpha.",
+                 [] { return std::make_unique<organ::DepthOfFieldEffect>(); });
     registry.add("filter.gaussian", "One direction of a Gaussian blur.",
                  [] { return std::make_unique<filter::GaussianEffect>(); });
     registry.add("picture.image", "A picture file as a target.",

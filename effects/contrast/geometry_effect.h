@@ -95,7 +95,7 @@ class GeometryEffect final : public Effect {
     double since_start_s_ = 0.0;
     double brightness_ = 0.0;
 
-    PainterScratch scratch_;
+    TriangleOrderScratch scratch_;
     std::vector<float> vertex_density_;
     std::vector<std::uint32_t> sorted_;
 };

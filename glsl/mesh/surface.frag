@@ -1,5 +1,6 @@
 #version 330 core
 // Blinn-Phong with a light in the eye and LIGHTS more at infinity.
+#include "common/unit.glsl"
 in vec3 v_place;
 in vec3 v_normal;
 uniform vec3 u_colour;
@@ -14,11 +15,6 @@ uniform vec3 u_light_direction[LIGHTS];  // towards the light, in the eye's fram
 uniform vec3 u_light_colour[LIGHTS];
 #endif
 layout(location = 0) out vec4 o_colour;
-
-// A vector that may have no length.
-vec3 unit(vec3 v) {
-    return v * inversesqrt(max(dot(v, v), 1e-30));
-}
 
 void main() {
     vec3 normal = unit(gl_FrontFacing ? v_normal : -v_normal);

@@ -34,7 +34,7 @@ TEST(PainterOrder, IsAStableSort) {
         for (const std::size_t t : order) {
             expected.insert(expected.end(), {indices[3 * t], indices[3 * t + 1], indices[3 * t + 2]});
         }
-        PainterScratch scratch;
+        TriangleOrderScratch scratch;
         std::vector<std::uint32_t> sorted;
         painter_order(indices, density, key, scratch, sorted);
         EXPECT_EQ(sorted, expected);
@@ -44,7 +44,7 @@ TEST(PainterOrder, IsAStableSort) {
 TEST(PainterOrder, TakesBadDensityAsZeroAndEmptyMeshes) {
     const std::vector<float> density{std::numeric_limits<float>::quiet_NaN(), -1.0F, 0.5F};
     const std::vector<std::uint32_t> indices{2, 2, 2, 0, 0, 0, 1, 1, 1};
-    PainterScratch scratch;
+    TriangleOrderScratch scratch;
     std::vector<std::uint32_t> sorted;
     painter_order(indices, density, PainterKey::max, scratch, sorted);
     EXPECT_EQ(sorted, (std::vector<std::uint32_t>{0, 0, 0, 1, 1, 1, 2, 2, 2}));
@@ -55,7 +55,7 @@ TEST(PainterOrder, TakesBadDensityAsZeroAndEmptyMeshes) {
 TEST(PainterOrder, WarmCallsKeepTheirMemory) {
     const std::vector<float> density{0.9F, 0.1F};
     const std::vector<std::uint32_t> indices{0, 0, 0, 1, 1, 1};
-    PainterScratch scratch;
+    TriangleOrderScratch scratch;
     std::vector<std::uint32_t> sorted;
     painter_order(indices, density, PainterKey::max, scratch, sorted);
     const auto memory = [&] {

@@ -139,6 +139,14 @@ Scene World::everything() const {
     {"name": "blush", "effect": "filter.gaussian", "parameters": {"axis": "y", "sigma": 0.1},
      "targets": {"source": "painter.main", "blurred": "contrast.capillary"}},
     {"name": "surface", "effect": "mesh.surface", "parameters": {"mesh": "tube.obj"}},
+    {"name": "bake", "effect": "tissue.bake", "parameters": {"mesh": {"file": "tube.obj"}, "size": 64}},
+    {"name": "organ", "effect": "organ.surface",
+     "parameters": {"mesh": {"file": "tube.obj"}, "diffuse_map": "smoke_a.png", "focus": {"focus_mm": 300, "far_mm": 340}}},
+    {"name": "membrane", "effect": "organ.surface",
+     "parameters": {"mesh": {"file": "tube.obj", "placement": {"move_mm": [4, -3, 0]}}, "blending": "blended",
+       "opacity": 0.4, "into_picture": true, "hematoma": {"spots": [{"centre": [5, -5, 0]}]}}},
+    {"name": "depth_of_field", "effect": "organ.depth_of_field", "parameters": {"radius": 0.05},
+     "targets": {"picture": "organ.final"}},
     {"name": "slice", "effect": "volume.slice",
      "parameters": {"volume": {"file": "ball.mha"}, "transfer_function": {"window": {"width": 100, "level": 50}}}},
     {"name": "entry", "effect": "volume.entry", "parameters": {"volume": {"file": "ball.mha"}}},
@@ -151,7 +159,7 @@ Scene World::everything() const {
   "targets": {"contrast.capillary": {"scale": 0.5}},
   "outputs": ["final", "contrast.distance_view", "contrast.mask", "contrast.reflux", "contrast.extravasate",
               "alone.cloud", "alone.distance", "depth.main", "painter.main", "host.main", "volume.colour",
-              "volume.slice"]
+              "volume.slice", "organ.final", "tissue.position"]
 })json");
 }
 

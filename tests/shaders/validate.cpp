@@ -123,6 +123,13 @@ std::vector<ParameterSet> parameter_sets() {
         cast(R"("sampling": {"limits": "two_pass"})"),
         cast(R"("sampling": {"limits": "mesh"})"),
         {"mesh.surface", R"({"mesh": "any.obj", "lights": [{}, {}]})"},
+        {"organ.surface",
+         R"({"mesh": {"file": "any.obj"}, "diffuse_map": "a.png", "normal_map": {"map": "b.png"},
+            "cut": {"map": "c.png"}, "hint": {"map": "d.png"}, "hematoma": {"host_spots": "spots"}, "focus": {},
+            "coagulation": {"burn_curve": "thesis"}, "lights": [{"glow_mm": 9}, {}, {}, {}, {}, {}, {}, {}]})"},
+        {"organ.surface", R"({"mesh": {"file": "any.obj"}, "diffuse_map": "a.png", "blending": "blended",
+            "cut": {"map": "c.png", "vertex_scalar": "cut"}, "hematoma": {"spots": [{}], "metric": "uv"},
+            "lights": []})"},
     };
 }
 

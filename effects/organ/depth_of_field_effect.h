@@ -1,0 +1,38 @@
+#pragma once
+
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "engine/runtime/effect.h"
+
+namespace viscera::organ {
+
+struct DepthOfFieldParams {
+    double radius = 0.012;
+    int taps = 48;
+    double largest_blurriness = 1.0;
+
+    void visit(ParamVisitor& v);
+};
+
+/// Places in the unit disc, evenly spread: Vogel's spiral, one golden angle apart. Multiples of 2^-10, so
+/// that float and double find the same pixels.
+[[nodiscard]] std::vector<glm::dvec2> disc_taps(int count);
+
+/// Blurs a picture by the blurriness in its alpha. What is sharp in front of it gives it nothing.
+class DepthOfFieldEffect final : public Effect {
+  public:
+    void visit(ParamVisitor& visitor) override { params_.visit(visitor); }
+    [[nodiscard]] std::vector<Port> ports() const override;
+    [[nodiscard]] std::span<const ProgramDesc> programs() const override;
+    [[nodiscard]] Work prepare(Prepare& prepare) override;
+    void draw(const Pass& pass) override;
+
+  private:
+    DepthOfFieldParams params_;
+    mutable std::vector<ProgramDesc> programs_;
+    std::vector<glm::vec2> taps_;
+};
+
+}  // namespace viscera::organ
