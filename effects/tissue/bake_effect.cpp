@@ -1,9 +1,11 @@
 #include "effects/tissue/bake_effect.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
+#include "engine/core/error.h"
 #include "engine/core/hash.h"
 #include "engine/core/log.h"
 #include "engine/gl/texture.h"
@@ -14,6 +16,16 @@ namespace {
 
 /// Rows of the textures that hold vertices and triangles.
 constexpr std::size_t row_length = 1024;
+
+/// Outputs besides positions, each compiled in where somebody reads it.
+struct Feature {
+    std::string_view port;
+    std::string_view define;
+};
+constexpr std::array<Feature, 3> features{{{"normal", "NORMAL"}, {"metric", "METRIC"}, {"seam", "SEAM"}}};
+
+// Beyond this a float cannot count triangles or vertices.
+constexpr std::size_t most_counted = std::size_t{1} << 24U;
 
 std::size_t rows_for(std::size_t count) {
     return std::max<std::size_t>((count + row_length - 1) / row_length, 1);
@@ -36,7 +48,17 @@ void BakeParams::visit(ParamVisitor& v) {
     v.field({.name = "size", .doc = "Texels along each side.", .unit = "px", .min = 16, .max = 8192}, size);
 }
 
-BakeEffect::BakeEffect() : programs_{{"common/fullscreen.vert", "tissue/bake.frag", {}}} {}
+BakeEffect::BakeEffect() {
+    for (std::uint32_t wanted = 0; wanted < 1U << features.size(); ++wanted) {
+        ProgramDesc program{"common/fullscreen.vert", "tissue/bake.frag", {}};
+        for (std::size_t i = 0; i < features.size(); ++i) {
+            if ((wanted >> i & 1U) != 0) {
+                program.defines.emplace_back(features[i].define);
+            }
+        }
+        programs_.push_back(std::move(program));
+    }
+}
 BakeEffect::~BakeEffect() = default;
 
 std::vector<Port> BakeEffect::ports() const {
@@ -93,13 +115,42 @@ Work BakeEffect::prepare(Prepare& prepare) {
         return Work::idle("the mesh's placement is singular");
     }
     if (!map_) {
-        const int size = prepare.size("position").x;
-        map_ = prepare.assets().shared<TexelMap>(Hash().add(mesh_->key()).add(size).value(), [&] {
-            return std::make_shared<TexelMap>(make_texel_map(mesh_->data(), size));
-        });
+        find_map(prepare);
+    }
+    wanted_ = 0;
+    for (std::size_t i = 0; i < features.size(); ++i) {
+        wanted_ |= (prepare.has(features[i].port) ? 1U : 0U) << i;
     }
     content_key_ = Hash().add(parameters_key_).add(mesh_->shape_key()).value();
     return Work::all(content_key_);
+}
+
+/// From what other passes or an earlier run have found, or anew.
+void BakeEffect::find_map(Prepare& prepare) {
+    const int size = prepare.size("position").x;
+    const std::string file = params_.mesh.file.path.string();
+    if (mesh_->data().triangle_count() >= most_counted || mesh_->data().positions.size() >= most_counted) {
+        throw Error(ErrorCode::limit, file, "has more triangles or vertices than can be baked (16,777,216)");
+    }
+    map_ = prepare.assets().shared<TexelMap>(Hash().add(mesh_->key()).add(size).value(), [&] {
+        return std::make_shared<TexelMap>(
+            make_texel_map(mesh_->data(), mesh_->places(), size,
+                           prepare.assets().progress("finding the texels of " + file)));
+    });
+    const auto say = [&](std::string_view key, std::uint64_t count, const std::string& what) {
+        if (count > 0) {
+            prepare.log().fault(key, file + ": " + std::to_string(count) + " " + what, count);
+        }
+    };
+    const TexelMapFaults& faults = map_->faults;
+    say("tissue.overlap", faults.overlapping_texels,
+        "texels lie in more than one triangle; the first one in the file has them");
+    say("tissue.flat", faults.flat_triangles,
+        "triangles have no area in the texture; nothing is painted on them");
+    say("tissue.huge", faults.huge_triangles,
+        "triangles span more than 4 textures; nothing is painted on them");
+    say("tissue.non_manifold", faults.non_manifold_edges,
+        "edges join more than two triangles; what is painted ends there");
 }
 
 void BakeEffect::fill_vertices() {
@@ -115,7 +166,8 @@ void BakeEffect::fill_vertices() {
     }
 }
 
-void BakeEffect::draw(const Pass& pass) {
+/// Brings what the shader reads up to date.
+void BakeEffect::upload(const Pass& pass) {
     if (!gpu_) {
         gpu_ = std::make_unique<Gpu>();
     }
@@ -150,7 +202,11 @@ void BakeEffect::draw(const Pass& pass) {
             gl::Texture::make_2d(pass.gl(), map_->size, map_->size, PixelFormat::rgba32f, "texels of a bake");
         gpu_->map->upload(std::as_bytes(std::span(map_->texels)));
     }
-    const gl::Program& program = pass.use(0);
+}
+
+void BakeEffect::draw(const Pass& pass) {
+    upload(pass);
+    const gl::Program& program = pass.use(wanted_);
     pass.bind(program, "u_map", *gpu_->map, gl::Filter::nearest);
     pass.bind(program, "u_vertices", *gpu_->vertices, gl::Filter::nearest);
     pass.bind(program, "u_triangles", *gpu_->triangles, gl::Filter::nearest);

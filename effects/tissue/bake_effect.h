@@ -30,7 +30,9 @@ class BakeEffect final : public Effect {
 
   private:
     struct Gpu;
+    void find_map(Prepare& prepare);
     void fill_vertices();
+    void upload(const Pass& pass);
 
     BakeParams params_;
     std::vector<ProgramDesc> programs_;
@@ -39,6 +41,7 @@ class BakeEffect final : public Effect {
     std::shared_ptr<const TexelMap> map_;
     glm::dmat4 to_world_{1.0};
     std::uint64_t content_key_ = 0;
+    std::uint32_t wanted_ = 0;         ///< bit i: feature i is read by somebody
     std::vector<glm::vec4> vertices_;  ///< two per vertex: world position and u, world normal and v
     std::unique_ptr<Gpu> gpu_;
 };

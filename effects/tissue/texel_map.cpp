@@ -4,76 +4,225 @@
 #include <array>
 #include <cmath>
 
+#include "effects/tissue/surface_walk.h"
+#include "engine/core/error.h"
+#include "engine/core/mesh_adjacency.h"
+#include "engine/core/texel_raster.h"
+
 namespace viscera::tissue {
 namespace {
 
-double cross2(const glm::dvec2& a, const glm::dvec2& b) {
-    return a.x * b.y - a.y * b.x;
-}
+constexpr std::uint32_t none = MeshAdjacency::none;
 
-class Rasteriser {
+class MapMaker {
   public:
-    Rasteriser(const MeshData& mesh, TexelMap& map) : mesh_(mesh), map_(map) {}
+    MapMaker(const MeshData& mesh, std::span<const std::uint32_t> place, int size)
+        : mesh_(mesh), place_(place), adjacency_(find_adjacency(mesh.indices, place)) {
+        map_.size = size;
+        map_.texels.resize(static_cast<std::size_t>(size) * static_cast<std::size_t>(size));
+        map_.faults.non_manifold_edges = adjacency_.non_manifold_edges;
+    }
 
-    void add(std::size_t triangle) {
-        std::array<glm::dvec2, 3> corner;
-        for (std::size_t k = 0; k < 3; ++k) {
-            corner[k] =
-                static_cast<double>(map_.size) * glm::dvec2(mesh_.uvs[mesh_.indices[3 * triangle + k]]);
+    TexelMap make(const Progress& progress) {
+        report(progress, 0.0);
+        for (std::uint32_t t = 0; t < mesh_.triangle_count(); ++t) {
+            fill(t);
         }
-        const glm::dvec2 e1 = corner[1] - corner[0];
-        const glm::dvec2 e2 = corner[2] - corner[0];
-        const double area = cross2(e1, e2);
-        if (!(std::abs(area) > 0.0)) {
+        report(progress, 0.3);
+        find_gutters();
+        report(progress, 0.6);
+        walk_gutters();
+        report(progress, 1.0);
+        return std::move(map_);
+    }
+
+  private:
+    /// A gutter texel's way back to the nearest border.
+    struct Gutter {
+        double distance2 = 0.0;  ///< [texels^2]
+        double outward = 0.0;    ///< [texels] towards the outside of the half-edge
+        double along = 0.0;
+        glm::dvec2 away{0.0};  ///< from the border to the texel [texels]
+        std::uint32_t half_edge = none;
+    };
+
+    static void report(const Progress& progress, double fraction) {
+        if (progress && !progress(fraction)) {
+            throw Error(ErrorCode::usage, "texels of a surface", "cancelled");
+        }
+    }
+
+    /// Where a half-edge begins in the texture [texels].
+    [[nodiscard]] glm::dvec2 at(std::uint32_t half_edge) const {
+        return static_cast<double>(map_.size) * glm::dvec2(mesh_.uvs[mesh_.indices[half_edge]]);
+    }
+    [[nodiscard]] double signed_area2(std::uint32_t t) const {
+        return cross2(at(3 * t + 1) - at(3 * t), at(3 * t + 2) - at(3 * t));
+    }
+    [[nodiscard]] std::size_t texel_at(int x, int y) const {
+        const int n = map_.size;
+        const auto wrap = [n](int i) { return static_cast<std::size_t>((i % n + n) % n); };
+        return wrap(y) * static_cast<std::size_t>(n) + wrap(x);
+    }
+
+    void fill(std::uint32_t t) {
+        const std::array<glm::dvec2, 3> corner{at(3 * t), at(3 * t + 1), at(3 * t + 2)};
+        const double area2 = signed_area2(t);
+        map_.faults.flat_triangles += area2 == 0.0 ? 1 : 0;
+        map_.faults.mirrored_triangles += area2 < 0.0 ? 1 : 0;
+        constexpr int most_textures = 4;
+        const bool seen =
+            for_each_texel(corner, most_textures * map_.size,
+                           [&](int x, int y, double b1, double b2) { set(texel_at(x, y), t, b1, b2); });
+        map_.faults.huge_triangles += seen ? 0 : 1;
+    }
+
+    void set(std::size_t index, std::uint32_t t, double b1, double b2) {
+        TexelPoint& texel = map_.texels[index];
+        if (texel.owner != 0.0F) {
+            // On the edge that two triangles share, the centre lies in both.
+            constexpr double inside = 1e-3;
+            const bool overlap = std::min({b1, b2, 1.0 - b1 - b2}) > inside &&
+                                 std::min({texel.b1, texel.b2, 1.0F - texel.b1 - texel.b2}) > inside;
+            map_.faults.overlapping_texels += overlap ? 1 : 0;
             return;
         }
-        const glm::dvec2 low = glm::min(corner[0], glm::min(corner[1], corner[2]));
-        const glm::dvec2 high = glm::max(corner[0], glm::max(corner[1], corner[2]));
-        const auto first = [](double x) { return static_cast<int>(std::ceil(x - 0.5)); };
-        const auto last = [](double x) { return static_cast<int>(std::floor(x - 0.5)); };
+        texel = {static_cast<float>(t), static_cast<float>(b1), static_cast<float>(b2),
+                 static_cast<float>(t + 1)};
+    }
+
+    /// Whether the texture ends or jumps at a half-edge: nothing beyond, other coordinates beyond, or a fold.
+    [[nodiscard]] bool is_border(std::uint32_t half_edge) const {
+        const std::uint32_t across = adjacency_.across[half_edge];
+        if (across == none) {
+            return true;
+        }
+        std::uint32_t a = half_edge;
+        std::uint32_t b = MeshAdjacency::next(half_edge);
+        std::uint32_t c = across;
+        std::uint32_t d = MeshAdjacency::next(across);
+        // Triangles of one orientation run along their common edge in opposite directions.
+        if (place_[mesh_.indices[a]] != place_[mesh_.indices[c]]) {
+            std::swap(c, d);
+        }
+        const auto uv = [&](std::uint32_t h) { return mesh_.uvs[mesh_.indices[h]]; };
+        if (uv(a) != uv(c) || uv(b) != uv(d)) {
+            return true;
+        }
+        const glm::dvec2 edge = at(b) - at(a);
+        const double side = cross2(edge, at(MeshAdjacency::previous(half_edge)) - at(a));
+        const double other_side = cross2(edge, at(MeshAdjacency::previous(across)) - at(a));
+        return side * other_side > 0.0;
+    }
+
+    void find_gutters() {
+        gutters_.resize(map_.texels.size());
+        const bool repeats = std::ranges::any_of(mesh_.uvs, [](const glm::vec2& uv) {
+            return std::min(uv.x, uv.y) < 0.0F || std::max(uv.x, uv.y) > 1.0F;
+        });
+        for (std::uint32_t h = 0; h < mesh_.indices.size(); ++h) {
+            if (signed_area2(h / 3) != 0.0 && is_border(h)) {
+                surround(h, repeats);
+            }
+        }
+    }
+
+    /// Offers the border at a half-edge to the texels near it.
+    void surround(std::uint32_t half_edge, bool repeats) {
+        const glm::dvec2 a = at(half_edge);
+        const glm::dvec2 b = at(MeshAdjacency::next(half_edge));
+        const glm::dvec2 edge = b - a;
+        const double length2 = glm::dot(edge, edge);
+        // A triangle that fill() left out has no gutter either.
+        if (!(length2 > 0.0) || std::sqrt(length2) > 6.0 * map_.size) {
+            return;
+        }
+        const double turn = signed_area2(half_edge / 3) > 0.0 ? 1.0 : -1.0;
+        const glm::dvec2 outward = turn * glm::dvec2(edge.y, -edge.x) / std::sqrt(length2);
+        const double reach = gutter_texels + 0.5;
+        const glm::dvec2 low = glm::min(a, b) - reach;
+        const glm::dvec2 high = glm::max(a, b) + reach;
+        const auto first = [&](double x) {
+            return static_cast<int>(std::ceil(repeats ? x : std::max(x, 0.0)));
+        };
+        const auto last = [&](double x) {
+            return static_cast<int>(std::floor(repeats ? x : std::min<double>(x, map_.size))) - 1;
+        };
         for (int y = first(low.y); y <= last(high.y); ++y) {
             for (int x = first(low.x); x <= last(high.x); ++x) {
-                const glm::dvec2 q = glm::dvec2(x + 0.5, y + 0.5) - corner[0];
-                const double b1 = cross2(q, e2) / area;
-                const double b2 = cross2(e1, q) / area;
-                if (b1 >= 0.0 && b2 >= 0.0 && b1 + b2 <= 1.0) {
-                    set(x, y, triangle, b1, b2);
+                const std::size_t index = texel_at(x, y);
+                if (map_.texels[index].owner != 0.0F) {
+                    continue;
+                }
+                const glm::dvec2 q(x + 0.5, y + 0.5);
+                const double along = std::clamp(glm::dot(q - a, edge) / length2, 0.0, 1.0);
+                const glm::dvec2 away = q - (a + along * edge);
+                const double distance2 = glm::dot(away, away);
+                if (distance2 <= reach * reach) {
+                    offer(gutters_[index], {distance2, glm::dot(away, outward), along, away, half_edge});
                 }
             }
         }
     }
 
-  private:
-    void set(int x, int y, std::size_t triangle, double b1, double b2) {
-        const auto wrap = [&](int i) {
-            return static_cast<std::size_t>((i % map_.size + map_.size) % map_.size);
-        };
-        TexelPoint& texel = map_.texels[wrap(y) * static_cast<std::size_t>(map_.size) + wrap(x)];
-        if (texel.owner != 0.0F) {
-            const bool on_edge = std::min({b1, b2, 1.0 - b1 - b2}) < 1e-6;
-            const bool there_on_edge = std::min({texel.b1, texel.b2, 1.0F - texel.b1 - texel.b2}) < 1e-6F;
-            map_.faults.overlapping_texels += on_edge && there_on_edge ? 0 : 1;
-            return;
+    /// The nearest border has a texel; at a corner, where two are equally near, the one that faces it more.
+    static void offer(Gutter& gutter, const Gutter& candidate) {
+        constexpr double same = 1e-9;
+        const double difference = candidate.distance2 - gutter.distance2;
+        const bool nearer = difference < -same * (1.0 + gutter.distance2);
+        const bool as_near = difference <= same * (1.0 + gutter.distance2);
+        if (gutter.half_edge == none || nearer || (as_near && candidate.outward > gutter.outward)) {
+            gutter = candidate;
         }
-        texel = {static_cast<float>(triangle), static_cast<float>(b1), static_cast<float>(b2),
-                 static_cast<float>(triangle + 1)};
+    }
+
+    void walk_gutters() {
+        const SurfaceWalk walk(mesh_.positions, mesh_.indices, adjacency_);
+        for (std::size_t i = 0; i < gutters_.size(); ++i) {
+            if (gutters_[i].half_edge != none) {
+                map_.texels[i] = point_of(gutters_[i], walk);
+            }
+        }
+    }
+
+    [[nodiscard]] TexelPoint point_of(const Gutter& gutter, const SurfaceWalk& walk) const {
+        const std::uint32_t t = gutter.half_edge / 3;
+        const glm::dvec2 d1 = at(3 * t + 1) - at(3 * t);
+        const glm::dvec2 d2 = at(3 * t + 2) - at(3 * t);
+        const double area2 = cross2(d1, d2);
+        const auto corner = [&](std::uint32_t k) {
+            return glm::dvec3(mesh_.positions[mesh_.indices[3 * t + k]]);
+        };
+        const glm::dvec3 way = (cross2(gutter.away, d2) * (corner(1) - corner(0)) +
+                                cross2(d1, gutter.away) * (corner(2) - corner(0))) /
+                               area2;
+        // Not from a corner itself, where it would be open which triangle is entered first.
+        constexpr double off_corner = 1e-6;
+        const double along = std::clamp(gutter.along, off_corner, 1.0 - off_corner);
+        const auto owner = -static_cast<float>(t + 1);
+        SurfacePoint end;
+        if (std::isfinite(way.x + way.y + way.z) && walk.leave(gutter.half_edge, along, way, end)) {
+            return {static_cast<float>(end.triangle), static_cast<float>(end.b1), static_cast<float>(end.b2),
+                    owner};
+        }
+        std::array<double, 3> weight{0.0, 0.0, 0.0};
+        weight[gutter.half_edge % 3] = 1.0 - gutter.along;
+        weight[MeshAdjacency::next(gutter.half_edge) % 3] = gutter.along;
+        return {owner, static_cast<float>(weight[1]), static_cast<float>(weight[2]), owner};
     }
 
     const MeshData& mesh_;
-    TexelMap& map_;
+    std::span<const std::uint32_t> place_;
+    MeshAdjacency adjacency_;
+    std::vector<Gutter> gutters_;
+    TexelMap map_;
 };
 
 }  // namespace
 
-TexelMap make_texel_map(const MeshData& mesh, int size) {
-    TexelMap map;
-    map.size = size;
-    map.texels.resize(static_cast<std::size_t>(size) * static_cast<std::size_t>(size));
-    Rasteriser rasteriser(mesh, map);
-    for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
-        rasteriser.add(t);
-    }
-    return map;
+TexelMap make_texel_map(const MeshData& mesh, std::span<const std::uint32_t> place, int size,
+                        const Progress& progress) {
+    return MapMaker(mesh, place, size).make(progress);
 }
 
 }  // namespace viscera::tissue

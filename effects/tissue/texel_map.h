@@ -1,28 +1,37 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <glm/glm.hpp>
 
 #include "engine/core/mesh_data.h"
+#include "engine/core/progress.h"
 
 namespace viscera::tissue {
 
-/// Which point of a surface a texel stands for: on `triangle`, at the weights (1 - b1 - b2, b1, b2) of its
-/// corners. Laid out as the RGBA32F texture that the bake's shader reads.
+/// Texels around each chart that name where the surface goes on.
+inline constexpr int gutter_texels = 5;
+
+/// Which point of a surface a texel stands for, as the bake's shader reads it from an RGBA32F texture: on a
+/// triangle, at the weights (1 - b1 - b2, b1, b2) of its corners.
 struct TexelPoint {
-    float triangle = 0.0F;
+    float triangle = 0.0F;  ///< i; -(i + 1): the surface ends at the chart's border, and this is the border
     float b1 = 0.0F;
     float b2 = 0.0F;
-    /// 0: the texel stands for nothing. i + 1: it lies in triangle i of a chart. -(i + 1): it lies in the
-    /// gutter beside triangle i, whose map continues there.
+    /// 0: the texel stands for nothing. i + 1: it lies in triangle i. -(i + 1): it lies in the gutter beside
+    /// triangle i, whose map continues there.
     float owner = 0.0F;
 };
 
 /// What was found while a map was made.
 struct TexelMapFaults {
-    std::size_t overlapping_texels = 0;  ///< texels that lie in more than one triangle
+    std::uint64_t overlapping_texels = 0;  ///< that more than one triangle covers; the first one has them
+    std::uint64_t flat_triangles = 0;      ///< without area in the texture: nothing can be painted on them
+    std::uint64_t huge_triangles = 0;      ///< that span more than 4 textures, left out
+    std::uint64_t non_manifold_edges = 0;  ///< where seams end, since more than two triangles meet
+    std::uint64_t mirrored_triangles = 0;  ///< clockwise in the texture; harmless
 };
 
 struct TexelMap {
@@ -31,7 +40,10 @@ struct TexelMap {
     TexelMapFaults faults;
 };
 
-/// Every texel whose centre lies in a triangle. Texture coordinates beyond [0, 1] repeat.
-[[nodiscard]] TexelMap make_texel_map(const MeshData& mesh, int size);
+/// Every texel whose centre lies in a triangle, and gutter_texels around each chart, unless they lie in
+/// another one. Texture coordinates beyond [0, 1] repeat. `place`: per vertex the vertex that stands for its
+/// place. Triangle numbers must be below 2^24. Throws Error(usage) when cancelled.
+[[nodiscard]] TexelMap make_texel_map(const MeshData& mesh, std::span<const std::uint32_t> place, int size,
+                                      const Progress& progress = {});
 
 }  // namespace viscera::tissue

@@ -161,6 +161,7 @@ void repair_attributes(MeshData& mesh, std::string_view where, Log& log) {
 
 void complete_normals(MeshData& mesh, std::string_view where, Log& log) {
     if (mesh.normals.empty()) {
+        log.info(std::string(where) + ": has no normals; they are made from its triangles");
         mesh.normals = vertex_normals(mesh);
         return;
     }

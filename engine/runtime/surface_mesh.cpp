@@ -69,13 +69,21 @@ void SurfaceMeshParams::visit(ParamVisitor& v) {
     v.field({.name = "host_positions",
              .doc = "Name of the host's array of 3 floats [mm] per vertex that moves them; empty: none."},
             host_positions);
+    v.field({.name = "atlas",
+             .doc = "Whose texture coordinates it is painted by: the file's, made ones, or the file's where "
+                    "each place has its own and else made ones."},
+            atlas);
 }
 
-SurfaceMesh::SurfaceMesh(MeshData mesh)
-    : data_(std::move(mesh)), merged_count_(data_.positions.size()), key_(content_key(data_)) {
-    shape_key_ = key_;
-    data_.uvs.resize(data_.positions.size());
-    bounds_ = data_.bounds();
+SurfaceMesh::SurfaceMesh(TextureSpace space)
+    : data_(std::move(space.mesh)),
+      picture_uvs_(std::move(space.picture_uvs)),
+      origin_(std::move(space.origin)),
+      place_(io::first_at_same_place(data_.positions)),
+      bounds_(data_.bounds()),
+      merged_count_(data_.positions.size() - origin_.size()),
+      key_(content_key(data_)),
+      shape_key_(key_) {
     if (!bounds_.empty()) {
         centre_ = 0.5 * (glm::dvec3(bounds_.min) + glm::dvec3(bounds_.max));
     }
@@ -87,11 +95,14 @@ std::shared_ptr<SurfaceMesh> SurfaceMesh::load(Assets& assets, const SurfaceMesh
                                   .add(params.filter)
                                   .add(params.mm_per_unit.value_or(0.0))
                                   .add(params.host_positions)
+                                  .add(params.atlas)
                                   .value();
     return assets.shared<SurfaceMesh>(key, [&] {
-        return std::make_shared<SurfaceMesh>(io::merge(io::load_meshes(
+        const std::vector<MeshData> parts = io::load_meshes(
             params.file.path, {.scale_mm_per_unit = params.mm_per_unit, .name_filter = params.filter},
-            assets.log())));
+            assets.log());
+        return std::make_shared<SurfaceMesh>(
+            make_texture_space(parts, params.atlas, params.file.path.string(), assets));
     });
 }
 
@@ -130,13 +141,15 @@ void SurfaceMesh::set_positions(std::span<const float> xyz) {
     if (file_positions_.empty()) {
         file_positions_ = data_.positions;
         file_normals_ = data_.normals;
-        place_ = io::first_at_same_place(file_positions_);
         smooth_normals_.resize(file_positions_.size());
         smooth_normals(data_, place_, smooth_normals_);
         file_smooth_normals_ = smooth_normals_;
     }
     for (std::size_t v = 0; v < merged_count_; ++v) {
         data_.positions[v] = {xyz[3 * v], xyz[3 * v + 1], xyz[3 * v + 2]};
+    }
+    for (std::size_t i = 0; i < origin_.size(); ++i) {
+        data_.positions[merged_count_ + i] = data_.positions[origin_[i]];
     }
     bounds_ = data_.bounds();
     turn_normals();
@@ -155,7 +168,7 @@ void SurfaceMesh::turn_normals() {
 const gl::Mesh& SurfaceMesh::gpu(const gl::Functions& gl) {
     if (!gpu_) {
         gpu_ = std::make_unique<gl::Mesh>(gl, data_);
-        gpu_->update_picture_uvs(data_.uvs);
+        gpu_->update_picture_uvs(picture_uvs_);
     } else if (gpu_shape_ != shape_key_) {
         gpu_->update_positions(data_.positions);
         gpu_->update_normals(data_.normals);

@@ -12,6 +12,7 @@
 #include "engine/core/placement.h"
 #include "engine/gl/mesh.h"
 #include "engine/runtime/frame.h"
+#include "engine/runtime/texture_space.h"
 
 namespace viscera {
 
@@ -25,6 +26,7 @@ struct SurfaceMeshParams {
     std::optional<double> mm_per_unit;
     PlacementParams placement;
     std::string host_positions;
+    AtlasSource atlas = AtlasSource::automatic;
 
     void visit(ParamVisitor& v);
 };
@@ -37,10 +39,10 @@ struct SurfaceMeshParams {
 /// had to be made, further ones follow, which repeat one of these at the border of a chart.
 class SurfaceMesh {
   public:
-    explicit SurfaceMesh(MeshData mesh);
+    explicit SurfaceMesh(TextureSpace space);
 
-    /// From the file, made on first use; every pass with the same file, filter, unit and host_positions gets
-    /// the same object. Throws as io::load_meshes().
+    /// From the file, made on first use; every pass with the same file, filter, unit, atlas and
+    /// host_positions gets the same object. Throws as io::load_meshes().
     [[nodiscard]] static std::shared_ptr<SurfaceMesh> load(Assets& assets, const SurfaceMeshParams& params);
 
     /// For prepare(): takes the host's positions of this frame, 3 floats [mm] per merged vertex in the file's
@@ -55,10 +57,16 @@ class SurfaceMesh {
     [[nodiscard]] std::uint64_t shape_key() const { return shape_key_; }
     /// With the present positions and normals; uvs always there.
     [[nodiscard]] const MeshData& data() const { return data_; }
+    /// Per vertex the first one at the same place in the file: seams closed.
+    [[nodiscard]] std::span<const std::uint32_t> places() const { return place_; }
     [[nodiscard]] const Bounds& bounds() const { return bounds_; }
     /// Where a placement turns about: the centre of the file's box.
     [[nodiscard]] const glm::dvec3& centre() const { return centre_; }
     [[nodiscard]] std::size_t merged_vertex_count() const { return merged_count_; }
+    /// The vertex that stands for a merged vertex wherever it is repeated; any other is its own.
+    [[nodiscard]] std::uint32_t merged_vertex(std::uint32_t vertex) const {
+        return vertex < merged_count_ ? vertex : origin_[vertex - merged_count_];
+    }
 
     /// For draw(): the triangles on the GPU, brought up to date. a_uv is texture space, a_picture_uv the
     /// file's own coordinates, which its pictures are made for.
@@ -69,11 +77,13 @@ class SurfaceMesh {
     void turn_normals();
 
     MeshData data_;
+    std::vector<glm::vec2> picture_uvs_;
+    std::vector<std::uint32_t> origin_;  ///< per vertex after the merged ones: which of these it repeats
+    std::vector<std::uint32_t> place_;
     std::vector<glm::vec3> file_positions_;
     std::vector<glm::vec3> file_normals_;
     std::vector<glm::vec3> file_smooth_normals_;  ///< of the file's positions, joined across seams
     std::vector<glm::vec3> smooth_normals_;       ///< of the present ones
-    std::vector<std::uint32_t> place_;            ///< the first vertex at the same place
     Bounds bounds_;
     glm::dvec3 centre_{0.0};
     std::size_t merged_count_ = 0;
