@@ -156,8 +156,22 @@ class SceneReader {
         scene.frames_per_second = fields.frames_per_second;
         scene.camera = fields.camera;
         scene.outputs = fields.outputs;
+        scene.timeline = fields.timeline;
+        check_timeline(scene.timeline);
         if (faults_.size() == faults_before) {
             check_camera(scene);
+        }
+    }
+
+    void check_timeline(const std::vector<TimelineTrack>& timeline) {
+        std::set<std::string> names;
+        for (std::size_t i = 0; i < timeline.size(); ++i) {
+            const std::string pointer = child_pointer("/timeline", i);
+            if (std::string wrong = timeline[i].fault(); !wrong.empty()) {
+                fault(pointer, std::move(wrong));
+            } else if (!names.insert(timeline[i].value).second) {
+                fault(pointer, "another track is of " + quote(timeline[i].value));
+            }
         }
     }
 

@@ -15,6 +15,7 @@
 #include "engine/core/camera.h"
 #include "engine/core/graph.h"
 #include "engine/core/params_json.h"
+#include "engine/core/timeline.h"
 
 namespace viscera {
 
@@ -48,6 +49,7 @@ struct Scene {
     CameraParams camera;
     std::vector<SceneTarget> targets;
     std::vector<ScenePass> passes;
+    std::vector<TimelineTrack> timeline;  ///< host values for frames that bring none
     std::vector<std::string> outputs;
     std::string hash;  ///< 16 hex digits over the scene's canonical JSON after overrides
 };

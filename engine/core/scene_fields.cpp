@@ -39,6 +39,9 @@ void SceneFields::visit(ParamVisitor& v) {
     v.field(
         {.name = "outputs", .doc = "Names of the targets wanted at the end of the frame.", .required = true},
         outputs);
+    v.field({.name = "timeline",
+             .doc = "What a host would tell effects as time passes: contacts, emitters, moved vertices."},
+            timeline);
 }
 
 void SceneTargetFields::visit(ParamVisitor& v) {

@@ -9,6 +9,7 @@
 #include "engine/core/camera.h"
 #include "engine/core/params.h"
 #include "engine/core/pixel_format.h"
+#include "engine/core/timeline.h"
 
 namespace viscera {
 
@@ -27,6 +28,7 @@ struct SceneFields {
     double frames_per_second = 30.0;
     CameraParams camera;
     std::vector<std::string> outputs;
+    std::vector<TimelineTrack> timeline;
 
     static constexpr std::array<std::string_view, 3> others{"shared", "targets", "passes"};
     void visit(ParamVisitor& v);

@@ -86,12 +86,13 @@ struct Frame {
     std::uint64_t index = 0;
     double time_s = 0.0;
     std::array<View, 2> eyes{};
-    int eye_count = 1;  ///< 1, or 2 (left, right)
-    const HostValues* values = nullptr;
+    int eye_count = 1;                   ///< 1, or 2 (left, right)
+    const HostValues* values = nullptr;  ///< null: the scene's timeline stands in
     std::span<const ImportedTexture> imported;
     std::span<const HostVolume> volumes;
     Quality quality{};
     Present present;
+    bool capture = true;  ///< whether what the renderer dumps is read back from this frame
     HostStatePolicy host_state = HostStatePolicy::restore;
 
     [[nodiscard]] const View& eye() const { return eyes[0]; }

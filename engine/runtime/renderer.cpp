@@ -16,6 +16,7 @@
 #include "engine/runtime/executor.h"
 #include "engine/runtime/presenter.h"
 #include "engine/runtime/scene_graph.h"
+#include "engine/runtime/timeline_values.h"
 
 namespace viscera {
 namespace {
@@ -106,6 +107,7 @@ class Renderer::Impl {
                             capabilities_.max_texture_2d);
         expected_.assign(imported.begin(), imported.end());
         scene_ = std::move(scene);
+        timeline_ = TimelineValues(scene_.timeline);
         effects_ = std::move(effects);
         has_history_ = reads_history(effects_);
         assets_.begin_scene();
@@ -169,12 +171,18 @@ class Renderer::Impl {
         report_.index = frame.index;
         report_.time_s = frame.time_s;
         report_.targets.clear();
-        executor_.run(frame, report_);
+        if (frame.values == nullptr && !timeline_.empty()) {
+            Frame with_values = frame;
+            with_values.values = &timeline_.at(frame.time_s, log_);
+            executor_.run(with_values, report_);
+        } else {
+            executor_.run(frame, report_);
+        }
         if (frame.present.enabled) {
             present(frame.present);
         }
         report_.cpu_ms = timer.milliseconds();
-        if (!dump_names_.empty()) {
+        if (!dump_names_.empty() && frame.capture) {
             if (capabilities_.software) {
                 gl_->Finish();  // for the reason that gl::read_texture has
             }
@@ -241,6 +249,7 @@ class Renderer::Impl {
     gl::VertexArray no_vertices_;
     Pass::Shared shared_;
     Scene scene_;
+    TimelineValues timeline_;
     SceneEffects effects_;
     Executor executor_;
     Presenter presenter_;
@@ -350,6 +359,9 @@ Frame Renderer::frame(std::uint64_t index) const {
     return frame;
 }
 
+bool Renderer::keeps_state() const {
+    return impl_->has_history_;
+}
 const FrameReport& Renderer::render(const Frame& frame) {
     return impl_->render(frame);
 }

@@ -94,6 +94,9 @@ class Renderer {
     [[nodiscard]] Frame frame(std::uint64_t index) const;
     /// A single picture of the scene at a time [s].
     [[nodiscard]] Frame still(double time_s) const;
+    /// Whether what a frame shows depends on the frames before it (energy, blood): a sequence then has to be
+    /// rendered from its beginning.
+    [[nodiscard]] bool keeps_state() const;
     /// Renders one frame. The report is valid until the next call.
     const FrameReport& render(const Frame& frame);
 

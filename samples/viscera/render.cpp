@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <charconv>
 #include <chrono>
 #include <cmath>
@@ -33,6 +34,7 @@ struct RenderArguments {
     std::filesystem::path report;
     std::filesystem::path glsl;
     bool progress = false;
+    bool no_run_up = false;
 };
 
 struct FrameRange {
@@ -62,6 +64,17 @@ FrameRange parse_frames(const std::string& text) {
         throw Error(ErrorCode::usage, "--frames", "'" + text + "' is not A:B with A < B");
     }
     return range;
+}
+
+/// Renders the frames that what comes next builds upon, without reading anything back.
+void run_up(Renderer& renderer, double until_s) {
+    const Scene& scene = renderer.scene();
+    const double first = std::ceil(scene.time_s * scene.frames_per_second);
+    for (double i = std::max(first, 0.0); i / scene.frames_per_second < until_s && !interrupted(); ++i) {
+        Frame frame = renderer.frame(static_cast<std::uint64_t>(i));
+        frame.capture = false;
+        renderer.render(frame);
+    }
 }
 
 std::vector<std::string> split(const std::string& text) {
@@ -179,6 +192,10 @@ int render(const RenderArguments& arguments) {
                            }
                        });
     renderer.set_dump(dump, [&](CapturedFrame&& frame) { writer.submit(std::move(frame)); });
+    if (renderer.keeps_state() && !arguments.no_run_up) {
+        run_up(renderer, sequence ? renderer.frame(range.first).time_s
+                                  : arguments.time_s.value_or(renderer.scene().time_s));
+    }
     std::uint64_t index = range.first;
     for (; index < range.end && !interrupted(); ++index) {
         Frame frame = sequence ? renderer.frame(index)
@@ -229,6 +246,10 @@ void add_render(CLI::App& app, int& exit_code) {
     command->add_option("--report", arguments->report, "writes what every pass and target did, as JSON");
     command->add_option("--glsl", arguments->glsl,
                         "reads shaders from this folder in place of those in the binary");
+    command->add_flag(
+        "--no-run-up", arguments->no_run_up,
+        "begins scenes that keep a state (energy, blood) at the first frame asked for, not at the "
+        "scene's beginning");
     command->add_flag("--progress", arguments->progress, "tells on stderr what is loaded, and counts frames");
     command->callback([arguments, &exit_code] { exit_code = render(*arguments); });
 }
