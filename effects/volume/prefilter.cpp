@@ -1,12 +1,15 @@
 #include "effects/volume/prefilter.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <thread>
 #include <vector>
 
 #include "effects/volume/gpu_volume.h"
+#include "engine/core/content_hash.h"
+#include "engine/core/error.h"
 #include "engine/core/hash.h"
 
 namespace viscera::volume {
@@ -102,6 +105,44 @@ std::vector<float> cut_out(const std::vector<float>& voxels, const VoxelBox& out
     return result;
 }
 
+/// What the disk cache calls coefficients; another number when they are made in another way.
+constexpr std::string_view cached_kind = "bspline-1";
+
+/// The coefficients of all voxels of one channel, as bytes of f32; those of a file from the disk cache, if
+/// they are there.
+std::vector<std::byte> all_coefficients(Assets& assets, const Source& source, int channel, float empty) {
+    const Volume& volume = source.volume();
+    const glm::ivec3 dims = volume.grid.dims;
+    // What a host gives may change with each frame and would fill the disk.
+    const bool keep = source.live == nullptr && assets.disk_cache().enabled();
+    const std::uint64_t key = keep ? Hash()
+                                         .add(dims)
+                                         .add(volume.type)
+                                         .add(volume.channels)
+                                         .add(channel)
+                                         .add(empty)
+                                         .add(content_hash(volume.voxels))
+                                         .value()
+                                   : 0;
+    if (keep) {
+        auto kept = assets.disk_cache().load(cached_kind, key);
+        if (kept && kept->size() == volume.grid.voxel_count() * sizeof(float)) {
+            return std::move(*kept);
+        }
+    }
+    std::vector<float> values = stored_values(volume, channel, {glm::ivec3(0), dims}, empty);
+    if (!make_coefficients(
+            dims, values, 0,
+            assets.progress("prefiltering " + std::filesystem::path(volume.source).filename().string()))) {
+        throw Error(ErrorCode::usage, volume.source, "cancelled");
+    }
+    const auto bytes = std::as_bytes(std::span(values));
+    if (keep) {
+        assets.disk_cache().store(cached_kind, key, bytes);
+    }
+    return {bytes.begin(), bytes.end()};
+}
+
 /// Coefficients that follow the volume they are made from.
 struct Coefficients {
     Source source;
@@ -109,7 +150,7 @@ struct Coefficients {
     std::uint64_t version = 0;  ///< of the voxels
 };
 
-void follow(Coefficients& coefficients, const Source& voxels, int channel) {
+void follow(Assets& assets, Coefficients& coefficients, const Source& voxels, int channel) {
     const Volume& volume = voxels.volume();
     const auto empty = static_cast<float>((voxels.statistics.min - volume.intercept) / volume.slope);
     const glm::ivec3 dims = volume.grid.dims;
@@ -119,19 +160,15 @@ void follow(Coefficients& coefficients, const Source& voxels, int channel) {
         changed = voxels.live->changes_since(coefficients.version, everything);
     }
     if (everything) {
-        std::vector<float> values = stored_values(volume, channel, {glm::ivec3(0), dims}, empty);
-        make_coefficients(dims, values);
         Volume made{.grid = volume.grid,
                     .type = ScalarType::f32,
                     .channels = 1,
-                    .voxels = {},
+                    .voxels = all_coefficients(assets, voxels, channel, empty),
                     .slope = volume.slope,
                     .intercept = volume.intercept,
                     .unit = volume.unit,
                     .narrowing_error = volume.narrowing_error,
                     .source = volume.source};
-        const auto bytes = std::as_bytes(std::span(values));
-        made.voxels.assign(bytes.begin(), bytes.end());
         if (coefficients.live == nullptr) {
             coefficients.live = std::make_unique<LiveVolume>(std::move(made));
         } else {
@@ -142,7 +179,7 @@ void follow(Coefficients& coefficients, const Source& voxels, int channel) {
         const VoxelBox reached = grown(box, reach, dims);
         const VoxelBox needed = grown(box, 2 * reach, dims);
         std::vector<float> values = stored_values(volume, channel, needed, empty);
-        make_coefficients(needed.size, values);
+        static_cast<void>(make_coefficients(needed.size, values));  // a few voxels: nobody waits
         values = cut_out(values, needed, reached);
         coefficients.live->update(reached, std::as_bytes(std::span(values)));
     }
@@ -153,16 +190,25 @@ void follow(Coefficients& coefficients, const Source& voxels, int channel) {
 
 }  // namespace
 
-void make_coefficients(const glm::ivec3& dims, std::span<float> voxels, int threads) {
+bool make_coefficients(const glm::ivec3& dims, std::span<float> voxels, int threads,
+                       const Progress& progress) {
     const auto nx = static_cast<std::size_t>(dims.x);
     const auto ny = static_cast<std::size_t>(dims.y);
     const auto nz = static_cast<std::size_t>(dims.z);
     const std::vector<double> along_x = elimination(dims.x);
     const std::vector<double> along_y = elimination(dims.y);
     const std::vector<double> along_z = elimination(dims.z);
+    // The calling thread does the first part, and as fast as it the others do theirs.
+    std::atomic<bool> stopped{false};
+    const auto goes_on = [&](int begin, int at, int end, double done_before) {
+        if (begin == 0 && !stopped && progress && !progress(done_before + 0.5 * at / end)) {
+            stopped = true;
+        }
+        return !stopped;
+    };
     in_parts(dims.z, threads, [&](int begin, int end) {
         std::vector<double> plane(nx * ny);
-        for (int z = begin; z < end; ++z) {
+        for (int z = begin; z < end && goes_on(begin, z, end, 0.0); ++z) {
             float* slice = voxels.data() + static_cast<std::size_t>(z) * nx * ny;
             std::copy(slice, slice + nx * ny, plane.begin());
             for (std::size_t y = 0; y < ny; ++y) {
@@ -174,7 +220,7 @@ void make_coefficients(const glm::ivec3& dims, std::span<float> voxels, int thre
     });
     in_parts(dims.y, threads, [&](int begin, int end) {
         std::vector<double> plane(nx * nz);
-        for (int y = begin; y < end; ++y) {
+        for (int y = begin; y < end && goes_on(begin, y, end, 0.5); ++y) {
             const auto row = [&](std::size_t z) {
                 return voxels.data() + (z * ny + static_cast<std::size_t>(y)) * nx;
             };
@@ -188,6 +234,7 @@ void make_coefficients(const glm::ivec3& dims, std::span<float> voxels, int thre
             }
         }
     });
+    return goes_on(0, 1, 1, 0.5);
 }
 
 std::shared_ptr<const Source> load_coefficients(Assets& assets, const Source& source, int channel) {
@@ -198,7 +245,7 @@ std::shared_ptr<const Source> load_coefficients(Assets& assets, const Source& so
         return made;
     });
     if (coefficients->version != source.version()) {
-        follow(*coefficients, source, channel);
+        follow(assets, *coefficients, source, channel);
     }
     return {coefficients, &coefficients->source};
 }

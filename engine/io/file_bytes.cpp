@@ -110,15 +110,21 @@ std::string read_file(const std::filesystem::path& file, std::size_t most_bytes)
 }
 
 void write_file(const std::filesystem::path& file, std::string_view bytes) {
+    write_file(file, std::span(&bytes, 1));
+}
+
+void write_file(const std::filesystem::path& file, std::span<const std::string_view> parts) {
     auto [opened, beside] = open_beside(file);
     Descriptor descriptor(opened);
     Unfinished unfinished(beside);
-    while (!bytes.empty()) {
-        const ssize_t put = ::write(descriptor.get(), bytes.data(), bytes.size());
-        if (put < 0 && errno != EINTR) {
-            fail(file, "cannot be written", errno);
+    for (std::string_view bytes : parts) {
+        while (!bytes.empty()) {
+            const ssize_t put = ::write(descriptor.get(), bytes.data(), bytes.size());
+            if (put < 0 && errno != EINTR) {
+                fail(file, "cannot be written", errno);
+            }
+            bytes.remove_prefix(put > 0 ? static_cast<std::size_t>(put) : 0);
         }
-        bytes.remove_prefix(put > 0 ? static_cast<std::size_t>(put) : 0);
     }
     if (const int error = descriptor.close(); error != 0) {
         fail(file, "cannot be written", error);

@@ -12,6 +12,7 @@
 #include "engine/core/image.h"
 #include "engine/core/log.h"
 #include "engine/core/progress.h"
+#include "engine/io/disk_cache.h"
 
 namespace viscera {
 
@@ -20,7 +21,9 @@ namespace viscera {
 /// Whatever holds OpenGL objects dies with the renderer, while its context is current.
 class Assets {
   public:
-    explicit Assets(Log& log, ProgressCallback progress = {}) : log_(log), progress_(std::move(progress)) {}
+    /// cache_folder: of disk_cache(); empty for none.
+    explicit Assets(Log& log, ProgressCallback progress = {}, std::filesystem::path cache_folder = {})
+        : log_(log), progress_(std::move(progress)), disk_cache_(std::move(cache_folder), log) {}
 
     /// The object of type T known by `key` (a hash of everything it is made from); made by `make` on first
     /// use.
@@ -52,6 +55,8 @@ class Assets {
     /// Number of objects held.
     [[nodiscard]] std::size_t size() const { return entries_.size(); }
     [[nodiscard]] Log& log() { return log_; }
+    /// Keeps what is long in the making beyond the process.
+    [[nodiscard]] const io::DiskCache& disk_cache() const { return disk_cache_; }
     /// For long work, so that whoever waits is told of it as `what` and may cancel it. Empty when nobody
     /// asked to be told.
     [[nodiscard]] Progress progress(std::string what) const;
@@ -65,6 +70,7 @@ class Assets {
     };
     Log& log_;
     ProgressCallback progress_;
+    io::DiskCache disk_cache_;
     std::map<Id, Entry> entries_;
     std::uint64_t scenes_ = 0;
 };

@@ -83,7 +83,7 @@ class Renderer::Impl {
           info_(describe(capabilities_)),
           host_state_(*gl_),
           entry_(host_state_, log_),
-          assets_(log_, std::move(options.progress)),
+          assets_(log_, std::move(options.progress), std::move(options.cache_folder)),
           shaders_(*gl_, options.shaders ? options.shaders : embedded_shader_reader(), log_),
           samplers_(*gl_),
           black_(make_black(*gl_)),

@@ -45,6 +45,8 @@ struct RendererOptions {
     /// must not call the renderer. When it returns false, render() throws Error(usage) "cancelled", nothing
     /// is half-loaded, and the next render() begins that work anew.
     ProgressCallback progress{};
+    /// Where what is long in the making is kept for the next process (io::DiskCache); empty: nowhere.
+    std::filesystem::path cache_folder{};
 };
 
 /// One target of a frame, read back.

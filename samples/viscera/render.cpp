@@ -24,6 +24,7 @@ struct RenderArguments {
     SceneArguments scene;
     ContextArguments context;
     ComputeArgument compute;
+    CacheArgument cache;
     std::filesystem::path folder = "out";
     std::optional<double> time_s;
     std::string frames;
@@ -159,6 +160,7 @@ int render(const RenderArguments& arguments) {
     if (!arguments.glsl.empty()) {
         options.shaders = shader_reader_from_folder(arguments.glsl);
     }
+    options.cache_folder = arguments.cache.folder();
     options.progress = [show = arguments.progress](std::string_view what, double fraction) {
         if (show) {
             std::cerr << "\r" << what << ' ' << std::lround(100.0 * fraction) << " %"
@@ -234,6 +236,7 @@ void add_render(CLI::App& app, int& exit_code) {
     arguments->scene.add_to(*command);
     arguments->context.add_to(*command);
     arguments->compute.add_to(*command);
+    arguments->cache.add_to(*command);
     command->add_option("-o,--output", arguments->folder, "folder for the pictures");
     command->add_option("--time", arguments->time_s, "time of a single picture [s], in place of the scene's");
     command->add_option("--frames", arguments->frames,

@@ -1,6 +1,7 @@
 #include "samples/viscera/session.h"
 
 #include <charconv>
+#include <cstdlib>
 
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
@@ -72,6 +73,32 @@ ComputeUse ComputeArgument::value() const {
         throw Error(ErrorCode::usage, "--compute", "'" + text + "' is none of auto, on, off");
     }
     return text == "on" ? ComputeUse::on : ComputeUse::off;
+}
+
+void CacheArgument::add_to(CLI::App& command) {
+    command.add_option("--cache", text,
+                       "folder where what was long in the making is kept for the next run, or off; "
+                       "$XDG_CACHE_HOME/viscera or ~/.cache/viscera by default");
+}
+
+std::filesystem::path CacheArgument::folder() const {
+    if (text == "off") {
+        return {};
+    }
+    if (!text.empty()) {
+        return text;
+    }
+    // The specification of these folders says that a relative one is to be ignored.
+    const auto absolute = [](const char* variable) {
+        const char* value = std::getenv(variable);
+        const std::filesystem::path path = value == nullptr ? "" : value;
+        return path.is_absolute() ? path : std::filesystem::path();
+    };
+    if (const auto cache = absolute("XDG_CACHE_HOME"); !cache.empty()) {
+        return cache / "viscera";
+    }
+    const auto home = absolute("HOME");
+    return home.empty() ? home : home / ".cache" / "viscera";
 }
 
 void name_renderer(const ContextInfo& info, const LogCallback& log) {

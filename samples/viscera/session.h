@@ -41,6 +41,16 @@ struct ComputeArgument {
     [[nodiscard]] ComputeUse value() const;
 };
 
+/// The option of every command that renders on what a user has: where the next run finds what was long in the
+/// making.
+struct CacheArgument {
+    std::string text;
+
+    void add_to(CLI::App& command);
+    /// Empty: no cache. By default $XDG_CACHE_HOME/viscera or ~/.cache/viscera.
+    [[nodiscard]] std::filesystem::path folder() const;
+};
+
 /// Says which renderer was chosen: software must never pass for hardware.
 void name_renderer(const ContextInfo& info, const LogCallback& log);
 

@@ -41,6 +41,7 @@ Esc                 quit
 struct ViewArguments {
     SceneArguments scene;
     ComputeArgument compute;
+    CacheArgument cache;
     std::filesystem::path folder = "out";
     std::filesystem::path glsl;
     double frame_time_ms = SamplingRateOptions{}.target_ms;
@@ -265,7 +266,10 @@ int view(const ViewArguments& arguments) {
     name_renderer(window->info(), log);
     TitleProgress progress(*window, "viscera: " + scene.name);
     Renderer renderer(window->proc_address(), registry,
-                      {.log = log, .compute = arguments.compute.value(), .progress = std::ref(progress)});
+                      {.log = log,
+                       .compute = arguments.compute.value(),
+                       .progress = std::ref(progress),
+                       .cache_folder = arguments.cache.folder()});
     renderer.set_scene(std::move(scene));
     try {
         Viewer(arguments, *window, renderer).run();
@@ -284,6 +288,7 @@ void add_view(CLI::App& app, int& exit_code) {
     const auto arguments = std::make_shared<ViewArguments>();
     arguments->scene.add_to(*command);
     arguments->compute.add_to(*command);
+    arguments->cache.add_to(*command);
     command->add_option("-o,--output", arguments->folder, "folder for pictures saved with S and E");
     command->add_option("--glsl", arguments->glsl, "folder from which F reads shaders again");
     command->add_option("--frame-time", arguments->frame_time_ms,

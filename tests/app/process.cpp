@@ -17,6 +17,8 @@ namespace {
 void apply(const Call& call) {
     unsetenv("DISPLAY");
     unsetenv("WAYLAND_DISPLAY");
+    unsetenv("XDG_CACHE_HOME");  // no test reads what another one kept
+    unsetenv("HOME");
     for (const auto& [name, value] : call.environment) {
         value ? setenv(name.c_str(), value->c_str(), 1) : unsetenv(name.c_str());
     }

@@ -20,7 +20,7 @@ struct Ended {
     std::string err;  ///< stderr
 };
 
-/// Runs `viscera` to its end. Without more said it sees no display.
+/// Runs `viscera` to its end. Without more said it sees no display, no home and no cache.
 [[nodiscard]] Ended viscera(const std::vector<std::string>& arguments, const Call& call = {});
 
 /// Runs any program of the PATH.
