@@ -100,9 +100,7 @@ LimitsEffect::LimitsEffect(Side side)
 }
 
 void LimitsEffect::validate() const {
-    if (params_.volume.file.empty() == params_.volume.host.empty()) {
-        throw Error(ErrorCode::scene, "/volume", "needs either a file or a host's volume");
-    }
+    params_.volume.validate();
 }
 
 std::vector<Port> LimitsEffect::ports() const {

@@ -46,9 +46,7 @@ void RayCastEffect::visit(ParamVisitor& visitor) {
 }
 
 void RayCastEffect::validate() const {
-    if (params_.volume.file.empty() == params_.volume.host.empty()) {
-        throw Error(ErrorCode::scene, "/volume", "needs either a file or a host's volume");
-    }
+    params_.volume.validate();
     params_.transfer_function.validate();
     if (params_.sampling.scheme == Scheme::preintegrated && params_.look.labels.used()) {
         throw Error(ErrorCode::scene, "/sampling/scheme",

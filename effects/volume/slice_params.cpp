@@ -69,9 +69,7 @@ void SliceParams::visit(ParamVisitor& v) {
 }
 
 void SliceParams::validate() const {
-    if (volume.file.empty() == volume.host.empty()) {
-        throw Error(ErrorCode::scene, "/volume", "needs either a file or a host's volume");
-    }
+    volume.validate();
     transfer_function.validate();
     plane.validate();
     if (background.a > 1.0) {

@@ -19,6 +19,34 @@ VolumeStatistics channel_statistics(const Volume& volume, int channel) {
     return statistics(volume, channel);
 }
 
+std::uint64_t key_of(const GeometryParams& g) {
+    return Hash()
+        .add(g.kind)
+        .add(g.r_min_mm)
+        .add(g.r_max_mm)
+        .add(g.first_angle_deg)
+        .add(g.angle_deg)
+        .add(g.wrap)
+        .add(g.height_mm)
+        .add(g.latitude_deg)
+        .value();
+}
+
+/// A file with the geometry that the scene gives it. Voxels are made fewer after that: along a ring the last
+/// and the first are neighbours.
+Volume load_file(Assets& assets, const SourceParams& params) {
+    const io::VolumeOptions options{
+        .progress = assets.progress("loading " + params.file.path.filename().string()),
+        .reduce = params.geometry ? 1 : params.reduce};
+    Volume volume = io::load_volume(params.file.path, options, assets.log());
+    if (params.geometry) {
+        volume.grid = params.geometry->applied_to(volume.grid);
+        volume.grid.validate(volume.source);
+        volume = reduced(volume, params.reduce);
+    }
+    return volume;
+}
+
 /// One object for all versions, or each would leave another behind.
 std::shared_ptr<const Source> live_source(Assets& assets, const LiveVolume& live, int channel) {
     const std::uint64_t key = Hash().add(&live).value();
@@ -59,7 +87,22 @@ void SourceParams::visit(ParamVisitor& v) {
          .doc = "A 3-D texture, or slices side by side in 2-D textures (atlas), which hold longer volumes; "
                 "automatic: a 3-D texture while it fits."},
         storage);
+    v.field({.name = "geometry",
+             .doc = "What the file's axes run along, where it does not say so itself, or instead of that."},
+            geometry);
     v.field({.name = "placement", .doc = "Where the volume is put."}, placement);
+}
+
+void SourceParams::validate() const {
+    if (file.empty() == host.empty()) {
+        throw Error(ErrorCode::scene, "/volume", "needs either a file or a host's volume");
+    }
+    if (geometry && !host.empty()) {
+        throw Error(ErrorCode::scene, "/volume/geometry", "a host's volume has its geometry in its grid");
+    }
+    if (geometry) {
+        geometry->validate("/volume/geometry");
+    }
 }
 
 std::shared_ptr<const Source> load_source(Assets& assets, const SourceParams& params, const Frame& frame) {
@@ -70,15 +113,15 @@ std::shared_ptr<const Source> load_source(Assets& assets, const SourceParams& pa
         }
         return live_source(assets, *found->volume, params.channel);
     }
-    const std::uint64_t key =
-        Hash().add(params.file.path.string()).add(params.reduce).add(params.channel).value();
+    const std::uint64_t key = Hash()
+                                  .add(params.file.path.string())
+                                  .add(params.reduce)
+                                  .add(params.channel)
+                                  .add(params.geometry ? key_of(*params.geometry) : 0)
+                                  .value();
     return assets.shared<Source>(key, [&] {
         auto source = std::make_shared<Source>();
-        source->owned = std::make_shared<const Volume>(
-            io::load_volume(params.file.path,
-                            {.progress = assets.progress("loading " + params.file.path.filename().string()),
-                             .reduce = params.reduce},
-                            assets.log()));
+        source->owned = std::make_shared<const Volume>(load_file(assets, params));
         source->statistics = channel_statistics(*source->owned, params.channel);
         source->key = key;
         return source;
@@ -86,7 +129,7 @@ std::shared_ptr<const Source> load_source(Assets& assets, const SourceParams& pa
 }
 
 glm::dmat4 placed(const VolumeGrid& grid, const PlacementParams& placement) {
-    const glm::dmat4 to_world = grid.texture_to_world();
+    const glm::dmat4 to_world = grid.box_to_world();
     const glm::dvec3 centre = to_world * glm::dvec4(0.5, 0.5, 0.5, 1.0);
     return placement_matrix(placement, centre) * to_world;
 }

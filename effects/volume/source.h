@@ -5,6 +5,7 @@
 #include <string>
 
 #include "effects/volume/atlas.h"
+#include "effects/volume/geometry.h"
 #include "engine/core/params.h"
 #include "engine/core/placement.h"
 #include "engine/core/volume.h"
@@ -20,9 +21,12 @@ struct SourceParams {
     int reduce = 1;
     int channel = 0;
     Storage storage = Storage::automatic;
+    std::optional<GeometryParams> geometry;
     PlacementParams placement;
 
     void visit(ParamVisitor& v);
+    /// Throws Error(scene): neither or both of file and host, a geometry that cannot be.
+    void validate() const;
 };
 
 /// A volume with what is known of it, shared by all passes that show it.
@@ -42,7 +46,7 @@ struct Source {
 [[nodiscard]] std::shared_ptr<const Source> load_source(Assets& assets, const SourceParams& params,
                                                         const Frame& frame);
 
-/// Texture coordinates -> world with the placement. The determinant may be negative.
+/// The unit box -> world (VolumeGrid::box_to_world) with the placement. The determinant may be negative.
 [[nodiscard]] glm::dmat4 placed(const VolumeGrid& grid, const PlacementParams& placement);
 
 }  // namespace viscera::volume

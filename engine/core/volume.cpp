@@ -66,6 +66,38 @@ glm::dmat4 VolumeGrid::texture_to_world() const {
     return matrix;
 }
 
+glm::dmat4 VolumeGrid::frame_to_world() const {
+    return {glm::dvec4(direction[0], 0.0), glm::dvec4(direction[1], 0.0), glm::dvec4(direction[2], 0.0),
+            glm::dvec4(origin_mm, 1.0)};
+}
+
+glm::dmat4 VolumeGrid::box_to_world() const {
+    if (!curvilinear()) {
+        return texture_to_world();
+    }
+    const FrameBox box = box_around(shape);
+    const glm::dvec3 size = box.max - box.min;
+    return frame_to_world() * glm::dmat4(glm::dvec4(size.x, 0.0, 0.0, 0.0), glm::dvec4(0.0, size.y, 0.0, 0.0),
+                                         glm::dvec4(0.0, 0.0, size.z, 0.0), glm::dvec4(box.min, 1.0));
+}
+
+glm::dvec3 VolumeGrid::world_of_index(const glm::dvec3& index) const {
+    if (!curvilinear()) {
+        return index_to_world() * glm::dvec4(index, 1.0);
+    }
+    const ShapeAxes axes = axes_of(shape, dims);
+    return frame_to_world() * glm::dvec4(to_frame(shape, axes.first + index * axes.step), 1.0);
+}
+
+glm::dvec3 VolumeGrid::index_of_world(const glm::dvec3& world) const {
+    if (!curvilinear()) {
+        return glm::inverse(index_to_world()) * glm::dvec4(world, 1.0);
+    }
+    const ShapeAxes axes = axes_of(shape, dims);
+    const glm::dvec3 frame = glm::inverse(direction) * (world - origin_mm);
+    return (from_frame(shape, frame) - axes.first) / axes.step;
+}
+
 void VolumeGrid::validate(std::string_view where) const {
     const auto fail = [where](const std::string& message) {
         throw Error(ErrorCode::file, std::string(where), message);
@@ -93,6 +125,7 @@ void VolumeGrid::validate(std::string_view where) const {
     if (!(std::abs(glm::determinant(direction)) > 1e-6)) {
         fail("direction is singular: its axes lie in one plane");
     }
+    shape.validate(where);
 }
 
 double Volume::stored(const glm::ivec3& index, int channel) const {

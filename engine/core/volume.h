@@ -12,6 +12,7 @@
 #include <glm/glm.hpp>
 
 #include "engine/core/progress.h"
+#include "engine/core/volume_shape.h"
 
 namespace viscera {
 
@@ -20,23 +21,35 @@ enum class ScalarType { u8, i8, u16, i16, f32 };
 [[nodiscard]] std::string_view to_string(ScalarType type);
 [[nodiscard]] std::size_t bytes_of(ScalarType type);
 
-/// Where voxels lie in the world: LPS patient axes, millimetres.
+/// Where voxels lie in the world: LPS patient axes, millimetres. A box, or the sector of a cylinder or sphere
+/// that `shape` describes, whose frame `origin_mm` and `direction` put into the world.
 struct VolumeGrid {
     glm::ivec3 dims{1};          ///< voxels per axis, >= 1
-    glm::dvec3 spacing_mm{1.0};  ///< between voxel centres, > 0
-    glm::dvec3 origin_mm{0.0};   ///< centre of voxel (0, 0, 0)
+    glm::dvec3 spacing_mm{1.0};  ///< between voxel centres, > 0; curvilinear: not used
+    glm::dvec3 origin_mm{0.0};   ///< centre of voxel (0, 0, 0); curvilinear: origin of the frame
     /// Columns: unit vectors along i, j and k. Need not be orthogonal (a tilted gantry shears), must not be
     /// singular.
     glm::dmat3 direction{1.0};
+    VolumeShape shape{};
 
+    [[nodiscard]] bool curvilinear() const { return shape.curvilinear(); }
     [[nodiscard]] std::size_t voxel_count() const;
-    /// Index (i, j, k) -> world. A voxel's centre has whole indices.
+    /// Index (i, j, k) -> world, Cartesian only. A voxel's centre has whole indices.
     [[nodiscard]] glm::dmat4 index_to_world() const;
-    /// Texture coordinates -> world. Voxel i's centre lies at (i + 0.5) / n, so the box [0, 1]^3 is dims *
-    /// spacing large: each voxel owns a whole cell.
+    /// Texture coordinates -> world, Cartesian only. Voxel i's centre lies at (i + 0.5) / n, so the box [0,
+    /// 1]^3 is dims * spacing large: each voxel owns a whole cell.
     [[nodiscard]] glm::dmat4 texture_to_world() const;
+    /// Frame [mm] -> world, curvilinear only.
+    [[nodiscard]] glm::dmat4 frame_to_world() const;
+    /// The unit box -> world, of which the volume takes all (Cartesian: texture_to_world) or which lies
+    /// closely around it in its frame.
+    [[nodiscard]] glm::dmat4 box_to_world() const;
+    /// Any index -> world, and back; whole indices are voxel centres. Along a wrapping axis indices of the
+    /// world lie within half the ring's gap of [0, n).
+    [[nodiscard]] glm::dvec3 world_of_index(const glm::dvec3& index) const;
+    [[nodiscard]] glm::dvec3 index_of_world(const glm::dvec3& world) const;
     /// Throws Error(file) at `where` that names the field: dims < 1, spacing or origin not finite, spacing <=
-    /// 0, direction singular.
+    /// 0, direction singular, shape as VolumeShape::validate.
     void validate(std::string_view where) const;
 
     bool operator==(const VolumeGrid&) const = default;
