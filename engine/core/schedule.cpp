@@ -1,6 +1,7 @@
 #include "engine/core/schedule.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "engine/core/error.h"
 #include "engine/core/hash.h"
@@ -61,6 +62,7 @@ void Schedule::decide(const Plan& plan) {
     choose_passes(plan);
     find_wanted(plan);
     give_status(plan);
+    settle_updates(plan);
     settle_outputs(plan);
     settle_history(plan);
 }
@@ -109,6 +111,13 @@ void Schedule::work(const Plan& plan, std::size_t pass, const PassWork& work) {
     const bool known = work.cacheable && work.key != 0;
     Hash inputs;
     inputs.add(known ? KeyKind::pass : KeyKind::pass_unknown).add(pass).add(known ? work.key : frame_);
+    if (work.update) {
+        // The same drawing in another part makes another picture.
+        for (const PixelRect& part : work.touched.rects()) {
+            inputs.add(part.x).add(part.y).add(part.width).add(part.height);
+        }
+        inputs.add(work.update);
+    }
     for (std::size_t b = 0; b < bindings.size(); ++b) {
         if (!bindings[b].content) {
             continue;
@@ -263,7 +272,7 @@ void Schedule::give_status(const Plan& plan) {
             passes_[p] = {culled, "no pass that draws needs it in this frame"};
         } else if (runs_[p] == 0) {
             passes_[p] = {cached, "inputs, parameters and camera unchanged"};
-        } else if (works_[p].region) {
+        } else if (works_[p].region || works_[p].update) {
             passes_[p] = {reduced, or_else(said, "only the touched region")};
         } else if (!works_[p].cacheable || works_[p].key == 0) {
             passes_[p] = {run, or_else(said, "cannot be cached")};
@@ -273,15 +282,65 @@ void Schedule::give_status(const Plan& plan) {
     }
 }
 
+/// Plays the chosen passes once more, now that it is known what each texture holds when.
+void Schedule::settle_updates(const Plan& plan) {
+    before_.clear();
+    before_begin_.assign(plan.passes.size() + 1, 0);
+    slots_ = at_start_;
+    for (std::size_t p = 0; p < plan.passes.size(); ++p) {
+        before_begin_[p] = before_.size();
+        if (runs_[p] == 0) {
+            continue;
+        }
+        for (const PlanBinding& binding : plan.passes[p].bindings) {
+            if (!binding.content || !makes_content(binding.access) ||
+                !contents_[*binding.content].is_drawn(*binding.content)) {
+                continue;
+            }
+            if (works_[p].update) {
+                settle_update(plan, p, *binding.content);
+            }
+            slots_[slot(plan, *binding.content)] = contents_[*binding.content].key;
+        }
+    }
+    before_begin_.back() = before_.size();
+}
+
+void Schedule::settle_update(const Plan& plan, std::size_t pass, std::size_t content) {
+    const PlanContent& planned = plan.contents[content];
+    const PixelRegion& touched = works_[pass].touched;
+    const auto base = planned.modifies ? planned.modifies : planned.passthrough;
+    if (!base) {
+        return;
+    }
+    if (!planned.modifies) {
+        Settlement step = settle(plan, *base, content);
+        if (step.action == Settlement::Action::copy_parts) {
+            PixelRegion parts;
+            for (const PixelRect& part : step.parts.rects()) {
+                parts.add(touched.covers(part) ? PixelRect{} : part);  // drawn in any case
+            }
+            step.parts = parts;
+        }
+        before_.push_back(step);
+    }
+    changes_.note(contents_[content].key, contents_[*base].key, touched);
+}
+
 Settlement Schedule::settle(const Plan& plan, std::size_t content, std::size_t where) {
     using enum Settlement::Action;
     const ContentState& state = contents_[content];
-    std::uint64_t& lies_there = slots_[slot(plan, where)];
+    const std::uint64_t lies_there = std::exchange(slots_[slot(plan, where)], state.key);
     if (lies_there == state.key) {
         return {where, none, where};
     }
-    lies_there = state.key;
-    return {where, state.empty ? clear : copy, state.holder};
+    if (state.empty) {
+        return {where, clear, state.holder};
+    }
+    if (const auto parts = changes_.between(lies_there, state.key)) {
+        return {where, copy_parts, state.holder, *parts};
+    }
+    return {where, copy, state.holder};
 }
 
 void Schedule::settle_outputs(const Plan& plan) {

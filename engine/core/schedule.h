@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/core/change_log.h"
 #include "engine/core/plan.h"
 
 namespace viscera {
@@ -16,6 +17,10 @@ struct PassWork {
     bool cacheable = true;  ///< the same key and the same inputs give the same picture
     std::uint64_t key = 0;  ///< hash of all that the picture depends on besides the inputs; 0: not cacheable
     std::string_view reason{};  ///< in the effect's words; must outlive the frame
+    /// Outside `touched` its writes hold what their passthrough holds, its modifies what stood there. A write
+    /// without a passthrough is clear there.
+    bool update = false;
+    PixelRegion touched{};  ///< on the targets
     /// Bit b: into binding b of the pass nothing is drawn though the pass is not idle.
     std::uint32_t empty_bindings = 0;
 };
@@ -41,12 +46,14 @@ struct ContentState {
     [[nodiscard]] bool is_drawn(std::size_t self) const { return !empty && holder == self; }
 };
 
-/// What is left to do so that a texture holds the picture when all passes are through.
+/// What is left to do so that a texture holds the picture when all passes are through, or what it is to hold
+/// before a pass updates it.
 struct Settlement {
-    enum class Action { none, clear, copy };
+    enum class Action { none, clear, copy, copy_parts };
     std::size_t content = 0;  ///< in whose texture the picture is to lie
     Action action = Action::none;
     std::size_t source = 0;  ///< content to copy from, or whose clear value to fill with
+    PixelRegion parts{};     ///< copy_parts: all that differs between the two textures
 };
 
 /// End of the frame for one Plan::history: settle `current`, then swap the textures of `current` and
@@ -65,8 +72,12 @@ struct HistoryStep {
 /// which in turn demands its inputs. Since contents take turns in one texture, a pass that runs destroys what
 /// stood there: the frame is played through in order until every running pass finds each input in place.
 ///
-/// The executor then, in the order of the passes, for each that draws(): attaches each content c that
-/// contents()[c].is_drawn(c), clears what it writes, and what it modifies where the content below
+/// An update makes a new content out of its passthrough by drawing a part of it. The texture it draws into
+/// mostly holds that content's forerunner, so only what has changed since is copied there before: a log of
+/// the last updates (ChangeLog) tells what that is. Unknown differences are copied whole.
+///
+/// The executor then, in the order of the passes, for each that draws(): does before(), attaches each content
+/// c that contents()[c].is_drawn(c), clears what it writes, and what it modifies where the content below
 /// (PlanContent::modifies) is empty; reads content c from the texture of contents()[c].holder, or is told
 /// that it is empty. At the end it does outputs(), and once nobody reads this frame any more, history().
 ///
@@ -88,6 +99,10 @@ class Schedule {
 
     [[nodiscard]] std::span<const PassDecision> passes() const { return passes_; }
     [[nodiscard]] std::span<const ContentState> contents() const { return contents_; }
+    /// What the textures that a pass updates are to hold before it draws.
+    [[nodiscard]] std::span<const Settlement> before(std::size_t pass) const {
+        return std::span(before_).subspan(before_begin_[pass], before_begin_[pass + 1] - before_begin_[pass]);
+    }
     [[nodiscard]] std::span<const Settlement> outputs() const { return outputs_; }
     [[nodiscard]] std::span<const HistoryStep> history() const { return history_; }
     /// What each plan texture holds when all of the above is done, swaps included. A texture whose pass
@@ -100,6 +115,8 @@ class Schedule {
     bool demand(const Plan& plan, std::size_t content);
     void find_wanted(const Plan& plan);
     void give_status(const Plan& plan);
+    void settle_updates(const Plan& plan);
+    void settle_update(const Plan& plan, std::size_t pass, std::size_t content);
     void settle_outputs(const Plan& plan);
     void settle_history(const Plan& plan);
     Settlement settle(const Plan& plan, std::size_t content, std::size_t where);
@@ -111,6 +128,9 @@ class Schedule {
     std::vector<PassWork> works_;
     std::vector<PassDecision> passes_;
     std::vector<ContentState> contents_;
+    ChangeLog changes_;
+    std::vector<Settlement> before_;
+    std::vector<std::size_t> before_begin_;  ///< by pass, and the end
     std::vector<Settlement> outputs_;
     std::vector<HistoryStep> history_;
     std::vector<std::uint64_t> held_after_;

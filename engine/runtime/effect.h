@@ -11,6 +11,7 @@
 
 #include "engine/core/graph.h"
 #include "engine/core/params.h"
+#include "engine/core/pixel_region.h"
 #include "engine/core/shader_source.h"
 #include "engine/runtime/frame.h"
 
@@ -41,17 +42,25 @@ struct Port {
 
 /// What there is to do for an effect in one frame.
 struct Work {
-    enum class Kind { idle, region, all };
+    enum class Kind { idle, region, update, all };
     Kind kind = Kind::all;
     std::string_view reason;  ///< must outlive the frame: a literal, or a string of the effect's own
-    PixelRect region;         ///< region: the part of the target that can differ from its clear value
-    std::uint64_t key = 0;    ///< hash of all the picture depends on besides its inputs; 0: never reuse it
+    /// region: the part of the target that can differ from its clear value. update: the part that can differ
+    /// from what a write's passthrough, or a modify, held before. draw() must set all of it.
+    PixelRegion region;
+    std::uint64_t key = 0;  ///< hash of all the picture depends on besides its inputs; 0: never reuse it
     std::uint32_t empty_outputs = 0;  ///< bit i: port i of ports() holds nothing but its clear value
 
     [[nodiscard]] static Work idle(std::string_view reason) { return {.kind = Kind::idle, .reason = reason}; }
     [[nodiscard]] static Work all(std::uint64_t key) { return {.kind = Kind::all, .key = key}; }
-    [[nodiscard]] static Work in_region(PixelRect region, std::string_view reason, std::uint64_t key) {
+    [[nodiscard]] static Work in_region(const PixelRect& region, std::string_view reason, std::uint64_t key) {
         return {.kind = Kind::region, .reason = reason, .region = region, .key = key};
+    }
+    /// For targets that survive frames (a `previous` read as the write's passthrough) or go through several
+    /// passes: costs by the region, not by the target. draw() must leave alone what lies beside it, between
+    /// its rectangles too.
+    [[nodiscard]] static Work update(const PixelRegion& region, std::string_view reason, std::uint64_t key) {
+        return {.kind = Kind::update, .reason = reason, .region = region, .key = key};
     }
 };
 

@@ -24,23 +24,27 @@ bool makes_content(Access access) {
     return access == Access::write || access == Access::modify;
 }
 
-/// The smallest rectangle around both.
-PixelRect around(const PixelRect& a, const PixelRect& b) {
-    if (a.empty() || b.empty()) {
-        return a.empty() ? b : a;
+/// Size of what a pass draws into [pixels]; {0, 0} when nobody needs any of it.
+glm::ivec2 target_size(const Plan& plan, const PlanPass& pass) {
+    for (const PlanBinding& binding : pass.bindings) {
+        if (binding.content && makes_content(binding.access)) {
+            const PlanContent& content = plan.contents[*binding.content];
+            return {content.width, content.height};
+        }
     }
-    const int left = std::min(a.x, b.x);
-    const int bottom = std::min(a.y, b.y);
-    return {left, bottom, std::max(a.x + a.width, b.x + b.width) - left,
-            std::max(a.y + a.height, b.y + b.height) - bottom};
+    return {0, 0};
 }
 
-/// The part of `region` that lies on a target, since an effect may ask for more.
-PixelRect confine(const PixelRect& region, glm::ivec2 size) {
-    const int left = std::clamp(region.x, 0, size.x);
-    const int bottom = std::clamp(region.y, 0, size.y);
-    return {left, bottom, std::clamp(region.x + region.width, 0, size.x) - left,
-            std::clamp(region.y + region.height, 0, size.y) - bottom};
+/// Which textures of an old plan hold what the frame after sees as `previous`, and where a new plan has them.
+std::vector<TargetPool::Kept> common_history(const Plan& from, const Plan& to) {
+    std::vector<TargetPool::Kept> kept;
+    for (const PlanHistory& history : to.history) {
+        const auto old = std::ranges::find(from.history, history.target, &PlanHistory::target);
+        if (old != from.history.end()) {
+            kept.push_back({*from.contents[old->previous].texture, *to.contents[history.previous].texture});
+        }
+    }
+    return kept;
 }
 
 }  // namespace
@@ -86,9 +90,15 @@ class Executor::FramePrepare final : public Prepare {
 Executor::Executor(const Pass::Shared& shared, const gl::Capabilities& capabilities, Options options)
     : shared_(shared), capabilities_(capabilities), options_(std::move(options)), pool_(shared.gl) {}
 
-void Executor::set_plan(Plan plan, std::vector<ImportedTarget> imported, SceneEffects& effects) {
+void Executor::set_plan(Plan plan, std::vector<ImportedTarget> imported, SceneEffects& effects,
+                        bool same_scene) {
+    std::vector<TargetPool::Kept> kept;
+    if (same_scene) {
+        turn_over();
+        kept = common_history(plan_, plan);
+    }
     ran_ = false;
-    pool_.reset(plan);
+    pool_.reset(plan, kept);
     plan_ = std::move(plan);
     imported_ = std::move(imported);
     passes_.clear();
@@ -143,10 +153,20 @@ void Executor::run(const Frame& frame, FrameReport& report) {
             settle(settlement);
         }
     } catch (...) {
-        pool_.forget_content();
+        forget_frame();
         throw;
     }
     ran_ = true;
+}
+
+/// What the frames before made stays: until its end a frame does not touch it.
+void Executor::forget_frame() {
+    std::vector<TargetPool::Kept> kept;
+    for (const PlanHistory& history : plan_.history) {
+        const std::size_t texture = *plan_.contents[history.previous].texture;
+        kept.push_back({texture, texture});
+    }
+    pool_.forget_content(kept);
 }
 
 void Executor::import(const Frame& frame) {
@@ -188,10 +208,15 @@ void Executor::prepare(const Frame& frame, FrameReport& report) {
         const Clock::time_point start = Clock::now();
         FramePrepare view(*this, frame, p);
         state.work = state.effect->prepare(view);
+        // An effect may ask for more than there is.
+        const glm::ivec2 size = target_size(plan_, pass);
+        state.work.region = state.work.region.confined(size.x, size.y);
         PassWork work{.idle = state.work.kind == Work::Kind::idle,
                       .region = state.work.kind == Work::Kind::region,
                       .key = state.work.key,
-                      .reason = state.work.reason};
+                      .reason = state.work.reason,
+                      .update = state.work.kind == Work::Kind::update,
+                      .touched = state.work.region};
         for (std::size_t b = 0; b < state.port_of_binding.size(); ++b) {
             work.empty_bindings |= ((state.work.empty_outputs >> state.port_of_binding[b]) & 1U) << b;
         }
@@ -238,16 +263,18 @@ bool Executor::draw(const Frame& frame, std::size_t p) {
         }
     }
     const gl::Framebuffer& target = pool_.framebuffer(state.colours, depth, pass.name);
-    const bool whole = state.work.kind != Work::Kind::region;
-    const PixelRect all{0, 0, size.x, size.y};
-    const PixelRect region = whole ? all : confine(state.work.region, size);
+    const bool whole = state.work.kind == Work::Kind::all;
+    const PixelRegion region = whole ? PixelRegion({0, 0, size.x, size.y}) : state.work.region;
 
     observe(pass.name, true);
     if (state.timer) {
         state.timer->begin();
     }
+    for (const Settlement& settlement : schedule_.before(p)) {
+        settle(settlement);
+    }
     target.bind();
-    clear(state, pass, target, region);
+    clear(state, pass, target, region.bounds());
     const Pass view(shared_, frame, state.programs, state.inputs, state.outputs, size, region);
     view.raster(gl::overwrite_state);
     state.effect->draw(view);
@@ -280,7 +307,8 @@ void Executor::clear(const PassState& state, const PlanPass& pass, const gl::Fra
             continue;
         }
         const PlanContent& content = plan_.contents[*binding.content];
-        const bool continues = content.modifies && !schedule_.contents()[*content.modifies].empty;
+        const bool continues = (content.modifies && !schedule_.contents()[*content.modifies].empty) ||
+                               (content.passthrough && state.work.kind == Work::Kind::update);
         const bool overwritten =
             state.ports[state.port_of_binding[b]].overwrites && state.work.kind == Work::Kind::all;
         TargetPool::Backdrop unknown;
@@ -329,7 +357,9 @@ void Executor::check(std::string_view pass) const {
 }
 
 void Executor::settle(const Settlement& settlement) {
-    if (settlement.action == Settlement::Action::none) {
+    const bool nothing_differs =
+        settlement.action == Settlement::Action::copy_parts && settlement.parts.empty();
+    if (settlement.action == Settlement::Action::none || nothing_differs) {
         return;
     }
     const gl::Texture& texture = texture_of(settlement.content);
@@ -358,8 +388,14 @@ void Executor::settle(const Settlement& settlement) {
     const gl::Functions& gl = shared_.gl;
     gl.BindFramebuffer(GL_READ_FRAMEBUFFER, origin.id());
     gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, target.id());
-    gl.BlitFramebuffer(0, 0, source.width(), source.height(), 0, 0, texture.width(), texture.height(),
-                       is_depth ? GL_DEPTH_BUFFER_BIT : GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    const PixelRegion all(PixelRect{0, 0, texture.width(), texture.height()});
+    const bool parts = settlement.action == Settlement::Action::copy_parts;
+    for (const PixelRect& part : (parts ? settlement.parts : all).rects()) {
+        const int right = part.x + part.width;
+        const int top = part.y + part.height;
+        gl.BlitFramebuffer(part.x, part.y, right, top, part.x, part.y, right, top,
+                           is_depth ? GL_DEPTH_BUFFER_BIT : GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    }
 }
 
 /// Ends the frame before: only now does nobody look at its outputs any more.

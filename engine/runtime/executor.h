@@ -28,13 +28,14 @@ class Executor {
     Executor(const Pass::Shared& shared, const gl::Capabilities& capabilities, Options options);
 
     /// Takes a compiled graph and its effects, which must outlive it. Targets of the same size are kept,
-    /// their content is not.
-    void set_plan(Plan plan, std::vector<ImportedTarget> imported, SceneEffects& effects);
+    /// their content is not, unless it is the last frame's and the scene the same as before.
+    void set_plan(Plan plan, std::vector<ImportedTarget> imported, SceneEffects& effects, bool same_scene);
     /// Takes another effect of the same kind and ports for a pass: its parameters have changed. All that is
     /// held stays.
     void replace_effect(std::size_t pass, Effect& effect, std::uint64_t parameters_key);
 
-    /// Draws one frame and fills the report's passes. On an exception nothing counts as held any more.
+    /// Draws one frame and fills the report's passes. On an exception nothing counts as held any more but
+    /// what the frames before left to be seen as `previous`.
     void run(const Frame& frame, FrameReport& report);
 
     [[nodiscard]] const Plan& plan() const { return plan_; }
@@ -69,6 +70,7 @@ class Executor {
     bool draw(const Frame& frame, std::size_t pass);
     void settle(const Settlement& settlement);
     void turn_over();
+    void forget_frame();
     void import(const Frame& frame);
     void check(std::string_view pass) const;
     void observe(std::string_view pass, bool begins) const;

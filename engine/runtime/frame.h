@@ -10,20 +10,11 @@
 
 #include "engine/core/camera.h"
 #include "engine/core/pixel_format.h"
+#include "engine/core/pixel_rect.h"
 #include "engine/core/volume.h"
 #include "engine/runtime/quality.h"
 
 namespace viscera {
-
-/// Rectangle in pixels, origin at the bottom left.
-struct PixelRect {
-    int x = 0;
-    int y = 0;
-    int width = 0;
-    int height = 0;
-    [[nodiscard]] bool empty() const { return width <= 0 || height <= 0; }
-    bool operator==(const PixelRect&) const = default;
-};
 
 /// What a host tells effects while frames go by: arrays of floats by name (per-vertex densities, emitters,
 /// contacts). A changed array has another version, so that effects know when to redraw.

@@ -40,14 +40,22 @@ void Pass::bind(const gl::Program& program, std::string_view uniform, const gl::
 
 void Pass::raster(const gl::RasterState& state) const {
     gl::RasterState confined = state;
-    if (region_ != PixelRect{0, 0, size_.x, size_.y}) {
-        confined.scissor = gl::Rect{region_.x, region_.y, region_.width, region_.height};
+    if (bounds_ != PixelRect{0, 0, size_.x, size_.y}) {
+        confined.scissor = gl::Rect{bounds_.x, bounds_.y, bounds_.width, bounds_.height};
     }
     gl::apply(gl(), confined, {0, 0, size_.x, size_.y});
 }
 
 void Pass::draw_fullscreen() const {
-    draw_generated(GL_TRIANGLES, 3, 1);
+    if (rects().size() == 1) {
+        draw_generated(GL_TRIANGLES, 3, 1);
+        return;
+    }
+    for (const PixelRect& rect : rects()) {
+        gl().Enable(GL_SCISSOR_TEST);
+        gl().Scissor(rect.x, rect.y, rect.width, rect.height);
+        draw_generated(GL_TRIANGLES, 3, 1);
+    }
 }
 
 void Pass::draw_generated(GLenum mode, int vertices, int instances) const {
@@ -67,11 +75,13 @@ bool Pass::compute(std::string_view port) const {
 void Pass::dispatch(const gl::Program& program, std::string_view port) const {
     const gl::Texture& target = *std::ranges::find(outputs_, port, &Output::port)->texture;
     const gl::Functions& gl = shared_.gl;
-    program.set("u_region", glm::ivec4(region_.x, region_.y, region_.width, region_.height));
     const auto groups = [](int pixels, int size) { return static_cast<GLuint>((pixels + size - 1) / size); };
     const glm::ivec3 size = program.group_size();
     gl.BindImageTexture(gl::image_unit, target.id(), 0, GL_FALSE, 0, GL_WRITE_ONLY, target.format().internal);
-    gl.DispatchCompute(groups(region_.width, size.x), groups(region_.height, size.y), 1);
+    for (const PixelRect& rect : rects()) {
+        program.set("u_region", glm::ivec4(rect.x, rect.y, rect.width, rect.height));
+        gl.DispatchCompute(groups(rect.width, size.x), groups(rect.height, size.y), 1);
+    }
     // Whatever may be done with a target next: read in a shader, drawn into, read back, copied, filled again.
     gl.MemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT | GL_PIXEL_BUFFER_BARRIER_BIT |
                      GL_TEXTURE_UPDATE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);

@@ -53,14 +53,15 @@ class Pass {
 
     Pass(const Shared& shared, const Frame& frame, std::span<ShaderLibrary::Entry* const> programs,
          std::span<const Input> inputs, std::span<const Output> outputs, glm::ivec2 size,
-         const PixelRect& region)
+         const PixelRegion& region)
         : shared_(shared),
           frame_(frame),
           programs_(programs),
           inputs_(inputs),
           outputs_(outputs),
           size_(size),
-          region_(region) {}
+          region_(region),
+          bounds_(region.bounds()) {}
 
     [[nodiscard]] const gl::Functions& gl() const { return shared_.gl; }
     [[nodiscard]] const Frame& frame() const { return frame_; }
@@ -68,8 +69,10 @@ class Pass {
     [[nodiscard]] Log& log() const { return shared_.log; }
     /// Size of the targets [pixels].
     [[nodiscard]] glm::ivec2 size() const { return size_; }
-    /// The part of the targets that is drawn: what prepare() asked for, or all.
-    [[nodiscard]] const PixelRect& region() const { return region_; }
+    /// The smallest rectangle around what is drawn: what prepare() asked for, or all.
+    [[nodiscard]] const PixelRect& region() const { return bounds_; }
+    /// The rectangles themselves.
+    [[nodiscard]] std::span<const PixelRect> rects() const { return region_.rects(); }
     /// Whether a read port has content.
     [[nodiscard]] bool has(std::string_view port) const { return texture(port) != nullptr; }
     [[nodiscard]] const gl::Texture* texture(std::string_view port) const;
@@ -84,7 +87,7 @@ class Pass {
 
     /// Sets the whole raster state, confined to region(). Before draw() it is gl::overwrite_state.
     void raster(const gl::RasterState& state) const;
-    /// Shades every pixel of region() once with the program in use (vertex shader common/fullscreen.vert).
+    /// Shades every pixel of rects() once with the program in use (vertex shader common/fullscreen.vert).
     void draw_fullscreen() const;
     /// Draws vertices that the vertex shader makes from gl_VertexID and gl_InstanceID.
     void draw_generated(GLenum mode, int vertices, int instances) const;
@@ -93,8 +96,8 @@ class Pass {
     /// shaders, the renderer's option allows them, and the target is a colour of viscera's own (what a host
     /// lends is only known to be drawable).
     [[nodiscard]] bool compute(std::string_view port) const;
-    /// Runs the compute program in use once for each pixel of region(), in groups of its local size. The
-    /// shader gets the target as image unit 0 and the region as `uniform ivec4 u_region` (x, y, width,
+    /// Runs the compute program in use once for each pixel of rects(), in groups of its local size. The
+    /// shader gets the target as image unit 0 and a rectangle as `uniform ivec4 u_region` (x, y, width,
     /// height): glsl/common/compute.glsl. Only after compute(port) said yes.
     void dispatch(const gl::Program& program, std::string_view port) const;
     /// Whether dispatch() has been called.
@@ -107,7 +110,8 @@ class Pass {
     std::span<const Input> inputs_;
     std::span<const Output> outputs_;
     glm::ivec2 size_;
-    PixelRect region_;
+    PixelRegion region_;
+    PixelRect bounds_;
     mutable bool dispatched_ = false;
 };
 

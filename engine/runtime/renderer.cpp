@@ -111,7 +111,7 @@ class Renderer::Impl {
         effects_ = std::move(effects);
         has_history_ = reads_history(effects_);
         assets_.begin_scene();
-        planned_ = false;
+        planned_ = same_scene_ = false;
     }
 
     void set_parameter(std::string_view pass, std::string_view pointer, const nlohmann::json& value) {
@@ -260,6 +260,7 @@ class Renderer::Impl {
     std::vector<ImportedTarget> expected_;  ///< as set_scene() was told
     std::vector<ImportedTarget> imported_;  ///< as the last frame brought
     bool planned_ = false;
+    bool same_scene_ = false;  ///< as when the last plan was made
     bool has_history_ = false;
     FrameReport report_;
 
@@ -306,8 +307,8 @@ class Renderer::Impl {
         // What is read back is an output: it keeps its texture to the end of the frame.
         std::vector<std::string> more = dump_names_;
         more.insert(more.end(), kept_.begin(), kept_.end());
-        executor_.set_plan(compile_with(more), imported_, effects_);
-        planned_ = true;
+        executor_.set_plan(compile_with(more), imported_, effects_, same_scene_);
+        planned_ = same_scene_ = true;
     }
 
     static std::vector<std::string> live_targets(const Plan& plan) {

@@ -1,6 +1,7 @@
 #include "engine/runtime/target_pool.h"
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -14,33 +15,47 @@ gl::Texture make(const gl::Functions& gl, const PlanTexture& texture, std::size_
 
 }  // namespace
 
-void TargetPool::reset(const Plan& plan) {
+void TargetPool::reset(const Plan& plan, std::span<const Kept> kept) {
     framebuffers_.clear();
-    std::vector<PlanTexture> old = std::exchange(descriptions_, {});
-    std::vector<gl::Texture> old_textures = std::exchange(textures_, {});
-    keys_.clear();
-    for (const PlanTexture& wanted : plan.textures) {
-        const auto fits = std::ranges::find_if(old, [&](const PlanTexture& t) {
-            return t.format == wanted.format && t.width == wanted.width && t.height == wanted.height;
-        });
-        if (fits != old.end()) {
-            const auto index = fits - old.begin();
-            textures_.push_back(std::move(old_textures[static_cast<std::size_t>(index)]));
-            old.erase(fits);
-            old_textures.erase(old_textures.begin() + index);
-        } else {
-            textures_.push_back(make(gl_, wanted, textures_.size()));
+    const std::vector<PlanTexture> old = std::exchange(descriptions_, {});
+    std::vector<std::optional<gl::Texture>> old_textures;
+    for (gl::Texture& texture : textures_) {
+        old_textures.emplace_back(std::move(texture));
+    }
+    textures_.clear();
+    const std::vector<std::uint64_t> old_keys = std::exchange(keys_, {});
+    backdrops_.assign(plan.textures.size(), {});
+    keys_.assign(plan.textures.size(), 0);
+    const auto fits = [&](std::size_t index, const PlanTexture& wanted) {
+        return old_textures[index] && old[index].format == wanted.format &&
+               old[index].width == wanted.width && old[index].height == wanted.height;
+    };
+    // Those whose content stays first, lest another takes their place.
+    std::vector<std::optional<gl::Texture>> textures(plan.textures.size());
+    for (const Kept& pair : kept) {
+        if (fits(pair.before, plan.textures[pair.now])) {
+            textures[pair.now] = std::exchange(old_textures[pair.before], std::nullopt);
+            keys_[pair.now] = old_keys[pair.before];
         }
+    }
+    for (std::size_t t = 0; t < textures.size(); ++t) {
+        const PlanTexture& wanted = plan.textures[t];
+        for (std::size_t o = 0; !textures[t] && o < old.size(); ++o) {
+            if (fits(o, wanted)) {
+                textures[t] = std::exchange(old_textures[o], std::nullopt);
+            }
+        }
+        textures_.push_back(textures[t] ? *std::move(textures[t]) : make(gl_, wanted, t));
         descriptions_.push_back(wanted);
     }
-    keys_.resize(textures_.size());
-    backdrops_.resize(textures_.size());
-    forget_content();
 }
 
-void TargetPool::forget_content() {
-    std::ranges::fill(keys_, 0);
+void TargetPool::forget_content(std::span<const Kept> kept) {
     std::ranges::fill(backdrops_, Backdrop{});
+    const std::vector<std::uint64_t> old = std::exchange(keys_, std::vector<std::uint64_t>(keys_.size(), 0));
+    for (const Kept& pair : kept) {
+        keys_[pair.now] = old[pair.before];
+    }
 }
 
 GLuint TargetPool::release(GLuint id) {

@@ -18,8 +18,14 @@ class TargetPool {
   public:
     explicit TargetPool(const gl::Functions& gl) : gl_(gl) {}
 
-    /// Makes the textures of a plan; those that fit are kept, but no content is. Throws Error(limit).
-    void reset(const Plan& plan);
+    /// A texture of the plan before that goes on as one of the new plan, with what it holds.
+    struct Kept {
+        std::size_t before = 0;  ///< indices
+        std::size_t now = 0;
+    };
+    /// Makes the textures of a plan; those that fit are kept, but no content is, save that of `kept` where
+    /// format and size are the same. Throws Error(limit).
+    void reset(const Plan& plan, std::span<const Kept> kept);
 
     [[nodiscard]] const gl::Texture& texture(std::size_t index) const { return textures_[index]; }
     /// Gives the texture of this OpenGL name to the caller, who then deletes it; the pool makes a new one in
@@ -32,8 +38,8 @@ class TargetPool {
         PixelRect drawn;
     };
     [[nodiscard]] Backdrop& backdrop(std::size_t index) { return backdrops_[index]; }
-    /// Nothing is known of any texture any more.
-    void forget_content();
+    /// Nothing is known of any texture any more but of those `kept`.
+    void forget_content(std::span<const Kept> kept);
     /// Content keys, by texture; 0: nothing.
     [[nodiscard]] std::span<std::uint64_t> keys() { return keys_; }
     /// Exchanges two textures with what they hold: how a history target turns over.

@@ -18,12 +18,45 @@ std::size_t fold(std::size_t hash, std::size_t value) {
     return std::hash<std::string>()(std::to_string(hash) + "," + std::to_string(value));
 }
 
-/// A pixel value that tells how it came about. Two are equal only when the same things were drawn.
-using Picture = std::size_t;
-constexpr Picture garbage = 7;
+// Pictures of four columns, each 16 pixels wide, of which updates touch some.
+constexpr std::size_t columns = 4;
+constexpr int column_width = 16;
+
+PixelRect column(std::size_t i) {
+    return {static_cast<int>(i) * column_width, 0, column_width, 64};
+}
+
+/// Pixel values that tell how they came about. Two are equal only when the same things were drawn.
+using Picture = std::array<std::size_t, columns>;
+constexpr Picture garbage{7, 7, 7, 7};
+
+Picture uniform(std::size_t value) {
+    Picture picture;
+    picture.fill(value);
+    return picture;
+}
 
 Picture cleared(const PlanContent& content) {
-    return fold(static_cast<std::size_t>(content.clear[0] * 16.0F), static_cast<std::size_t>(content.format));
+    return uniform(
+        fold(static_cast<std::size_t>(content.clear[0] * 16.0F), static_cast<std::size_t>(content.format)));
+}
+
+std::size_t fold(std::size_t hash, const Picture& picture) {
+    for (const std::size_t value : picture) {
+        hash = fold(hash, value);
+    }
+    return hash;
+}
+
+/// Of what lies below, an update leaves all but the columns it touches.
+Picture drawn_over(const Picture& below, const PassWork& work, std::size_t value) {
+    Picture picture = below;
+    for (std::size_t i = 0; i < columns; ++i) {
+        if (!work.update || work.touched.covers(column(i))) {
+            picture[i] = value + i;
+        }
+    }
+    return picture;
 }
 
 bool leaves_empty(const PassWork& work, std::size_t binding) {
@@ -60,7 +93,7 @@ class Oracle {
   private:
     static void draw(const Plan& plan, std::size_t p, const PassWork& work, std::size_t noise,
                      std::vector<Picture>& pictures) {
-        Picture input = fold(p, fold(work.key, noise));
+        std::size_t input = fold(p, fold(work.key, noise));
         for (const PlanBinding& b : plan.passes[p].bindings) {
             if (b.content && (b.access == Access::read || b.access == Access::previous)) {
                 input = fold(input, pictures[*b.content]);
@@ -75,9 +108,9 @@ class Oracle {
             }
             const PlanContent& content = plan.contents[*b.content];
             const auto stand_in = content.modifies ? content.modifies : content.passthrough;
-            pictures[*b.content] = !leaves_empty(work, i) ? fold(input, *b.content)
-                                   : stand_in             ? pictures[*stand_in]
-                                                          : cleared(content);
+            const Picture below = stand_in ? pictures[*stand_in] : cleared(content);
+            pictures[*b.content] =
+                leaves_empty(work, i) ? below : drawn_over(below, work, fold(input, *b.content));
         }
     }
 
@@ -117,6 +150,9 @@ class Machine {
     }
 
     std::size_t drawn = 0;
+    std::size_t copied_whole = 0;
+    std::size_t copied_parts = 0;
+    std::size_t copied_columns = 0;
 
   private:
     Picture& at(const Plan& plan, std::size_t content) {
@@ -129,6 +165,15 @@ class Machine {
             at(plan, s.content) = cleared(plan.contents[s.source]);
         } else if (s.action == Settlement::Action::copy) {
             at(plan, s.content) = at(plan, s.source);
+            ++copied_whole;
+        } else if (s.action == Settlement::Action::copy_parts) {
+            for (std::size_t i = 0; i < columns; ++i) {
+                if (s.parts.covers(column(i))) {
+                    at(plan, s.content)[i] = at(plan, s.source)[i];
+                    ++copied_columns;
+                }
+            }
+            ++copied_parts;
         }
     }
 
@@ -140,7 +185,10 @@ class Machine {
     void draw(const Plan& plan, const Schedule& schedule, std::size_t p, const PassWork& work,
               std::size_t noise, const std::vector<Picture>& expected) {
         ASSERT_FALSE(work.idle);
-        Picture input = fold(p, fold(work.key, noise));
+        for (const Settlement& s : schedule.before(p)) {
+            settle(plan, s);
+        }
+        std::size_t input = fold(p, fold(work.key, noise));
         for (const PlanBinding& b : plan.passes[p].bindings) {
             if (b.content && (b.access == Access::read || b.access == Access::previous)) {
                 EXPECT_EQ(sample(plan, schedule, *b.content), expected[*b.content]) << "read of pass " << p;
@@ -156,13 +204,19 @@ class Machine {
         for (const PlanBinding& b : plan.passes[p].bindings) {
             if (b.content && (b.access == Access::write || b.access == Access::modify) &&
                 schedule.contents()[*b.content].is_drawn(*b.content)) {
-                at(plan, *b.content) = fold(input, *b.content);
+                const PlanContent& content = plan.contents[*b.content];
+                const bool continues = (content.modifies && !schedule.contents()[*content.modifies].empty) ||
+                                       (content.passthrough && work.update);
+                const Picture below = continues          ? at(plan, *b.content)
+                                      : content.modifies ? cleared(plan.contents[*content.modifies])
+                                                         : cleared(content);
+                at(plan, *b.content) = drawn_over(below, work, fold(input, *b.content));
             }
         }
     }
 
     std::vector<Picture> textures_;
-    Picture host_ = 0;
+    Picture host_{};
 };
 
 /// A static camera with something moving now and then: most keys stay, so that caches are hit.
@@ -171,9 +225,13 @@ std::vector<PassWork> random_work(Random& random, std::size_t passes) {
     for (PassWork& w : work) {
         w.idle = chance(random, 25);
         w.region = chance(random, 10);
+        w.update = !w.region && chance(random, 50);
         w.empty_bindings = chance(random, 30) ? static_cast<std::uint32_t>(random() % 16) : 0;
         w.cacheable = chance(random, 90);
         w.key = chance(random, 5) ? 0 : 1 + (chance(random, 15) ? pick(random, 3) : 0);
+        for (std::size_t i = 0; i < columns; ++i) {
+            w.touched.add(chance(random, 40) ? column(i) : PixelRect{});
+        }
     }
     return work;
 }
@@ -185,6 +243,7 @@ TEST(Schedule, RandomGraphsShowWhatTheyShowWithoutSkipping) {
     std::size_t swaps = 0;
     std::size_t shared = 0;
     std::size_t settled = 0;
+    std::size_t copied_parts = 0;
     while (graphs < 4000 && !HasFailure()) {
         Graph graph = random_graph(random);
         for (TargetDesc& target : graph.targets) {
@@ -211,7 +270,7 @@ TEST(Schedule, RandomGraphsShowWhatTheyShowWithoutSkipping) {
                 noise[p] = work[p].cacheable && work[p].key != 0 ? 0 : random();
             }
             const std::uint64_t host_key = chance(random, 20) ? 0 : pick(random, 2);
-            const Picture host = host_key == 0 ? random() : 1000 + host_key;
+            const Picture host = uniform(host_key == 0 ? random() : 1000 + host_key);
             schedule.update(plan, work, held, std::array{host_key});
             const auto expected = oracle.frame(plan, work, noise, host);
             machine.frame(plan, schedule, work, noise, host, expected);
@@ -229,6 +288,7 @@ TEST(Schedule, RandomGraphsShowWhatTheyShowWithoutSkipping) {
             apart += content.texture && !content.modifies ? 1 : 0;
         }
         shared += apart - plan.textures.size();
+        copied_parts += machine.copied_parts;
         if (HasFailure()) {
             ADD_FAILURE() << "graph " << graphs;
         }
@@ -238,6 +298,7 @@ TEST(Schedule, RandomGraphsShowWhatTheyShowWithoutSkipping) {
     EXPECT_GT(swaps, 100U);
     EXPECT_GT(shared, 100U);
     EXPECT_GT(settled, 100U);
+    EXPECT_GT(copied_parts, 10U);
 }
 
 /// a -> b -> out, and mark reads b.
@@ -450,6 +511,130 @@ TEST(Schedule, IdleSimulationKeepsItsStateWithoutACopy) {
     EXPECT_FALSE(schedule.history()[0].swap);
     EXPECT_EQ(schedule.contents()[*plan.history[0].current].holder, plan.history[0].previous);
     EXPECT_EQ(schedule.passes()[1].status, cached) << "the state it stands in for is the one last shown";
+}
+
+/// A state that two passes update one after the other, and what is shown of it.
+class ScheduleOfUpdates : public testing::Test {
+  protected:
+    ScheduleOfUpdates() {
+        work[2].key = 1;
+        work[0] = work[1] = {.idle = true};
+    }
+    static PassWork touches(std::initializer_list<std::size_t> touched) {
+        PassWork update{.key = 1, .update = true};
+        for (const std::size_t i : touched) {
+            update.touched.add(column(i));
+        }
+        return update;
+    }
+    /// Columns copied, all before the drawing and after it; a whole copy counts as all columns.
+    std::size_t frame() {
+        schedule.update(plan, work, held);
+        machine.copied_whole = machine.copied_columns = 0;
+        machine.frame(plan, schedule, work, {0, 0, 0}, {}, oracle.frame(plan, work, {0, 0, 0}, {}));
+        held.assign(schedule.held_after().begin(), schedule.held_after().end());
+        return machine.copied_whole * columns + machine.copied_columns;
+    }
+
+    static Graph graph() {
+        Graph graph;
+        graph.targets = {target("state"), target("out")};
+        graph.passes = {
+            pass("first", {previous("state"), write("state", "state.last")}),
+            pass("second", {read("state"), write("state", "state")}),
+            pass("show", {read("state"), write("out")}),
+        };
+        graph.outputs = {"out"};
+        return graph;
+    }
+    Plan plan = compile_or_throw(graph(), 64, 64);
+    std::vector<PassWork> work = std::vector<PassWork>(3);
+    std::vector<std::uint64_t> held = std::vector<std::uint64_t>(plan.textures.size(), 0);
+    Schedule schedule;
+    Machine machine;
+    Oracle oracle;
+};
+
+TEST_F(ScheduleOfUpdates, OnlyWhatChangedSinceIsCopied) {
+    work[1] = touches({0});
+    frame();
+    frame();  // by now each texture has held some state
+    EXPECT_EQ(schedule.passes()[1].status, reduced);
+    EXPECT_EQ(schedule.passes()[1].reason, "only the touched region");
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_EQ(frame(), 0U) << "the same region again is drawn anew in any case";
+    }
+    work[1] = touches({2});
+    EXPECT_EQ(frame(), 1U) << "column 0";
+    EXPECT_EQ(frame(), 0U);
+    work[1] = touches({1, 3});
+    EXPECT_EQ(frame(), 1U) << "column 2";
+    work[1] = {.idle = true};
+    EXPECT_EQ(frame(), 0U) << "an idle frame";
+    EXPECT_EQ(schedule.passes()[2].status, cached);
+    work[1] = touches({3});
+    EXPECT_EQ(frame(), 1U) << "column 1 of before the idle frame";
+}
+
+TEST_F(ScheduleOfUpdates, PassesInARowCopyOnlyWhatChanged) {
+    work[0] = touches({0});
+    work[1] = touches({2});
+    for (int i = 0; i < 4; ++i) {
+        frame();
+    }
+    EXPECT_LE(frame(), 3U) << "of the twelve of three textures";
+    work[1] = {.idle = true};
+    frame();
+    EXPECT_LE(frame(), 2U) << "what the first made stands in for the second's";
+}
+
+TEST_F(ScheduleOfUpdates, RandomUpdatesShowWhatWholeCopiesShow) {
+    Random random(11);
+    std::size_t copied = 0;
+    for (int i = 0; i < 2000 && !HasFailure(); ++i) {
+        for (std::size_t p = 0; p < 2; ++p) {
+            work[p] = chance(random, 40) ? PassWork{.idle = true} : touches({pick(random, columns)});
+            work[p].update = !chance(random, 5);  // now and then all is drawn
+        }
+        if (chance(random, 5)) {
+            oracle = {};
+            held.assign(held.size(), 0);  // as after a failed frame: the state begins anew
+        }
+        copied += frame();
+    }
+    EXPECT_GT(copied, 500U);
+    EXPECT_LT(copied, 2000U * 3U) << "of 24000";
+}
+
+TEST_F(ScheduleOfUpdates, ALostTextureIsCopiedWhole) {
+    work[1] = touches({0});
+    for (int i = 0; i < 3; ++i) {
+        frame();
+    }
+    held[*plan.contents[*plan.history[0].current].texture] = 0;
+    schedule.update(plan, work, held);
+    EXPECT_EQ(schedule.before(1).front().action, Settlement::Action::copy);
+}
+
+TEST_F(ScheduleOfUpdates, TheFirstUpdateIsMadeOfNothing) {
+    work[1] = touches({0});
+    schedule.update(plan, work, held);
+    ASSERT_EQ(schedule.before(1).size(), 1U);
+    EXPECT_EQ(schedule.before(1).front().action, Settlement::Action::clear);
+    EXPECT_TRUE(schedule.before(0).empty());
+}
+
+TEST_F(ScheduleOfUpdates, WarmUpdatesAllocateNothing) {
+    work[1] = touches({0});
+    for (int i = 0; i < 3; ++i) {
+        frame();
+    }
+    const std::size_t before = allocation_count();
+    for (int i = 0; i < 3; ++i) {
+        schedule.update(plan, work, held);
+        std::ranges::copy(schedule.held_after(), held.begin());
+    }
+    EXPECT_EQ(allocation_count() - before, 0U);
 }
 
 TEST(Schedule, StatusWords) {
