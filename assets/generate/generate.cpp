@@ -70,6 +70,7 @@ void generate_all(const std::filesystem::path& folder, std::uint64_t seed, int c
     generate_vessels(folder, seed);
     generate_sprites(folder, seed);
     generate_images(folder, seed);
+    generate_organs(folder, seed, coarser);
     generate_volumes(folder, seed, coarser);
 }
 

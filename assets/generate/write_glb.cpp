@@ -75,6 +75,14 @@ void write_glb(const MeshData& mesh, const std::filesystem::path& path) {
         attributes["NORMAL"] =
             buffer.add(mesh.normals, float_component, "VEC3", mesh.normals.size(), vertex_buffer);
     }
+    if (!mesh.uvs.empty()) {
+        // glTF counts v from the top of a picture.
+        std::vector<glm::vec2> uvs;
+        for (const glm::vec2& uv : mesh.uvs) {
+            uvs.emplace_back(uv.x, 1.0F - uv.y);
+        }
+        attributes["TEXCOORD_0"] = buffer.add(uvs, float_component, "VEC2", uvs.size(), vertex_buffer);
+    }
     for (const VertexScalars& scalars : mesh.scalars) {
         attributes[scalars.name] =
             buffer.add(scalars.values, float_component, "SCALAR", scalars.values.size(), vertex_buffer);

@@ -7,7 +7,7 @@ namespace viscera::organ {
 void OwnMesh::follow(const gl::Functions& gl, const SurfaceMesh& surface) {
     if (!mesh_) {
         mesh_.emplace(gl, surface.data());
-        mesh_->update_picture_uvs(surface.data().uvs);
+        mesh_->update_picture_uvs(surface.picture_uvs());
     } else if (shape_ != surface.shape_key()) {
         mesh_->update_positions(surface.data().positions);
         mesh_->update_normals(surface.data().normals);

@@ -48,8 +48,8 @@ void SurfaceEffect::load(Prepare& prepare) {
     to_world_ = placement_matrix(params_.mesh.placement, surface_->centre());
     // Slopes are of the surface as it was made; a placement makes relief larger with the organ.
     const double scale = std::cbrt(std::abs(glm::determinant(glm::dmat3(to_world_))));
-    picture_mm_per_uv_ = scale * mm_per_uv(surface_->data(), surface_->data().uvs);
-    tissue_mm_per_uv_ = picture_mm_per_uv_;
+    picture_mm_per_uv_ = scale * mm_per_uv(surface_->data(), surface_->picture_uvs());
+    tissue_mm_per_uv_ = scale * mm_per_uv(surface_->data(), surface_->data().uvs);
     if (has_relief() && picture_mm_per_uv_ == 0.0) {
         prepare.log().fault("organ.no_uv", params_.mesh.file.path.string() +
                                                " has no texture coordinates of any extent: its relief is "

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <cstdint>
+
+#include "assets/generate/organ_field.h"
+#include "engine/core/mesh_data.h"
+
+namespace viscera::assets {
+
+/// The body's surface with outward normals and an atlas of planar charts: the zero surface of the field on a
+/// grid of the given spacing, vertices spread evenly. Vertices at the borders of charts come once per chart.
+/// Throws std::runtime_error when no grid gives one closed surface.
+[[nodiscard]] MeshData mesh_organ(const OrganField& field, double spacing_mm);
+
+/// The wall of the abdomen around it, open towards the navel: seen from inside, one chart.
+[[nodiscard]] MeshData mesh_abdomen(std::uint64_t seed, int cells);
+
+}  // namespace viscera::assets
