@@ -12,6 +12,8 @@
 #include "effects/organ/surface_effect.h"
 #include "effects/picture/image_effect.h"
 #include "effects/tissue/bake_effect.h"
+#include "effects/tissue/bipolar_effect.h"
+#include "effects/tissue/coagulate_effect.h"
 #include "effects/volume/limits_effect.h"
 #include "effects/volume/ray_cast_effect.h"
 #include "effects/volume/slice_effect.h"
@@ -44,18 +46,21 @@ void register_all(Registry& registry) {
                  [] { return std::make_unique<DistanceViewEffect>(); });
     registry.add("volume.ray_cast", "A volume, by a ray for each pixel.",
                  [] { return std::make_unique<volume::RayCastEffect>(); });
-    registry.add("volume.entry", "Where rays enter a volume, for volume.ray_cast.", [] {
-        return std::make_unique<volume::LimitsEffect>(volume::LimitsEffect::Side::entry);
-    });
-    registry.add("volume.exit", "Where rays leave a volume, for volume.ray_cast.", [] {
-        return std::make_unique<volume::LimitsEffect>(volume::LimitsEffect::Side::exit);
-    });
+    registry.add("volume.entry", "Where rays enter a volume, for volume.ray_cast.",
+                 [] { return std::make_unique<volume::LimitsEffect>(volume::LimitsEffect::Side::entry); });
+    registry.add("volume.exit", "Where rays leave a volume, for volume.ray_cast.",
+                 [] { return std::make_unique<volume::LimitsEffect>(volume::LimitsEffect::Side::exit); });
     registry.add("volume.slice", "A volume's values on a plane or a mesh that cuts it.",
                  [] { return std::make_unique<volume::SliceEffect>(); });
     registry.add("mesh.surface", "Opaque meshes, with their depth.",
                  [] { return std::make_unique<mesh::SurfaceEffect>(); });
     registry.add("tissue.bake", "A surface in texture space: places, normals, scale and seams.",
                  [] { return std::make_unique<tissue::BakeEffect>(); });
+    registry.add("tissue.coagulate", "Energy that tissue takes up around monopolar contacts.",
+                 [] { return std::make_unique<tissue::CoagulateEffect>(); });
+    registry.add("tissue.coagulate_bipolar",
+                 "Tissue that a bipolar tool holds, burnt within the tool's shape.",
+                 [] { return std::make_unique<tissue::BipolarEffect>(); });
     registry.add("organ.surface", "An organ with burns, blood, cuts and relief, or a membrane before it.",
                  [] { return std::make_unique<organ::SurfaceEffect>(); });
     registry.add("organ.depth_of_field", "Blurs a picture by the blurriness that organs leave in its alpha.",

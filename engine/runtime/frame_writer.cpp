@@ -1,6 +1,8 @@
 #include "engine/runtime/frame_writer.h"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -107,6 +109,17 @@ void FrameWriter::run() {
     }
 }
 
+namespace {
+
+/// All digits of a time: EXR headers hold floats, and a state that is loaded again goes on from this time.
+std::string exact_text(double value) {
+    std::array<char, 32> text{};
+    const auto result = std::to_chars(text.data(), text.data() + text.size(), value);
+    return {text.data(), result.ptr};
+}
+
+}  // namespace
+
 void FrameWriter::write(CapturedFrame& frame) const {
     const std::string prefix = stem(frame.report.index) + ".";
     std::vector<io::ExrPart> parts;
@@ -119,6 +132,7 @@ void FrameWriter::write(CapturedFrame& frame) const {
         io::ExrPart part{
             .name = target.name, .image = std::move(target.image), .attributes = options_.attributes};
         part.attributes.push_back({"viscera:time_s", static_cast<float>(frame.report.time_s)});
+        part.attributes.push_back({"viscera:time", exact_text(frame.report.time_s)});
         part.attributes.push_back({"viscera:frame", static_cast<float>(frame.report.index)});
         const std::filesystem::path file =
             options_.folder / (prefix + (options_.multipart ? "exr" : target.name + ".exr"));

@@ -1,0 +1,89 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "effects/tissue/contact.h"
+#include "effects/tissue/saved_energy.h"
+#include "effects/tissue/tile_tree.h"
+#include "engine/runtime/effect.h"
+#include "engine/runtime/surface_mesh.h"
+
+namespace viscera::tissue {
+
+/// In what distances from a contact are measured.
+enum class Metric { world, uv };
+[[nodiscard]] std::span<const std::string_view> choice_names(Metric metric);
+
+/// A ball outside which nothing changes.
+struct LimitParams {
+    glm::dvec3 point_mm{0.0};
+    double radius_mm = 10.0;
+
+    void visit(ParamVisitor& v);
+};
+
+struct CoagulateParams {
+    std::optional<SurfaceMeshParams> mesh;
+    int size = 512;
+    Metric metric = Metric::world;
+    std::vector<ContactParams> contacts;
+    Gain gain = Gain::peak;
+    double max_energy = 1.0;
+    double max_speed_mm_s = 1000.0;
+    std::optional<LimitParams> limit_to;
+    SavedEnergyParams load;
+
+    void visit(ParamVisitor& v);
+};
+
+/// Energy that tissue takes up around monopolar contacts: `tissue.energy`, which survives from frame to
+/// frame.
+class CoagulateEffect final : public Effect {
+  public:
+    CoagulateEffect();
+    ~CoagulateEffect() override;
+    void visit(ParamVisitor& visitor) override { params_.visit(visitor); }
+    void validate() const override;
+    [[nodiscard]] std::vector<Port> ports() const override;
+    [[nodiscard]] std::span<const ProgramDesc> programs() const override { return programs_; }
+    [[nodiscard]] Work prepare(Prepare& prepare) override;
+    void draw(const Pass& pass) override;
+
+  private:
+    struct Gpu;
+    bool find_tiles(Prepare& prepare);
+    void find_region(PixelRegion& region);
+    void list_tiles(const PixelRegion& region);
+    void pack_contacts();
+    void find_limit(const HostValues* values);
+
+    CoagulateParams params_;
+    std::vector<ProgramDesc> programs_;
+    std::uint64_t parameters_key_ = 0;
+    std::shared_ptr<SurfaceMesh> mesh_;
+    glm::dmat4 to_world_{1.0};
+    std::uint64_t placed_shape_ = 0;
+    std::vector<glm::vec3> world_;  ///< the mesh's vertices [mm]
+    std::unique_ptr<TileTree> tiles_;
+
+    std::optional<double> last_time_s_;  ///< of the last frame that was drawn, or had nothing to draw
+    bool began_ = false;                 ///< the state has been begun; false when it must be begun anew
+    ContactList contacts_;
+    // What draw() is to do.
+    double time_s_ = 0.0;
+    const HostValues* values_ = nullptr;  ///< of the frame being drawn
+    bool loads_ = false;                  ///< from the saved state, or from nothing when there is none
+    glm::vec4 limit_{0.0F};
+    std::vector<std::uint32_t> found_;  ///< tiles near one contact
+    std::vector<std::uint32_t> pair_tiles_;
+    std::vector<std::uint32_t> pair_contacts_;
+    std::vector<std::uint32_t> next_;     ///< by tile
+    std::vector<glm::vec4> drawn_tiles_;  ///< as glsl/tissue/coagulate.vert
+    std::vector<glm::vec4> list_;
+    std::vector<glm::vec4> packed_;
+    std::unique_ptr<Gpu> gpu_;
+};
+
+}  // namespace viscera::tissue

@@ -1,0 +1,155 @@
+#include "effects/tissue/contact.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <tuple>
+
+namespace viscera::tissue {
+namespace {
+
+constexpr std::array<std::string_view, 3> action_names{"coagulate", "ultrasound", "dissect"};
+constexpr std::array<std::string_view, 2> gain_names{"peak", "normalised"};
+
+// Smaller Gaussians than this have no square in a float.
+constexpr double smallest_sigma = 1e-18;
+// A dose beyond this has the same effect, and sums of 65,000 of them stay finite in a float.
+constexpr double largest_dose = 1e30;
+
+bool finite(const glm::dvec3& p) {
+    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+}
+
+/// Where a contact stands in the order that sums are formed in.
+auto rank(const Contact& c) {
+    return std::tuple(c.action, c.from.x, c.from.y, c.from.z, c.to.x, c.to.y, c.to.z, c.dose, c.sigma);
+}
+
+/// What one contact of a host's array does; none when it cannot be used.
+std::optional<ContactAction> action_of(float code, float power) {
+    if (!(code == 0.0F || code == 1.0F || code == 2.0F)) {
+        return std::nullopt;
+    }
+    return code == 0.0F && power < 0.0F ? ContactAction::dissect : static_cast<ContactAction>(code);
+}
+
+}  // namespace
+
+std::span<const std::string_view> choice_names(ContactAction) {
+    return action_names;
+}
+std::span<const std::string_view> choice_names(Gain) {
+    return gain_names;
+}
+
+void ContactParams::visit(ParamVisitor& v) {
+    v.field({.name = "from_mm", .doc = "Where it begins (u, v, 0 with metric uv).", .unit = "mm"}, from_mm);
+    v.field({.name = "to_mm", .doc = "Where it ends, by default where it begins.", .unit = "mm"}, to_mm);
+    v.field({.name = "begin_s", .doc = "When the current is switched on.", .unit = "s"}, begin_s);
+    v.field({.name = "end_s", .doc = "When it is switched off.", .unit = "s"}, end_s);
+    v.field({.name = "power", .doc = "Energy per second, as gain says.", .unit = "1/s", .min = 0.0}, power);
+    v.field({.name = "sigma_mm",
+             .doc = "Width of the Gaussian around it (of UV with metric uv).",
+             .unit = "mm",
+             .min = 0.0},
+            sigma_mm);
+    v.field({.name = "action", .doc = "What it does."}, action);
+}
+
+double contact_reach(double rate, double sigma) {
+    constexpr double usual_frame_s = 1.0 / 60.0;
+    constexpr double half_unit = 0x1p-24;
+    const double ratio = rate * usual_frame_s / half_unit;
+    return ratio > 1.0 ? sigma * std::sqrt(2.0 * std::log(ratio)) : 0.0;
+}
+
+void ContactList::add(const Contact& contact, double power, double seconds, Gain gain) {
+    // Written so that NaN is left out.
+    if (!(power > 0.0 && seconds > 0.0 && contact.sigma > smallest_sigma)) {
+        return;
+    }
+    const double g =
+        gain == Gain::peak ? 1.0 : 1.0 / (2.0 * std::numbers::pi * contact.sigma * contact.sigma);
+    Contact added = contact;
+    added.reach = contact_reach(std::min(power * g, largest_dose), contact.sigma);
+    added.dose = std::min(power * g * seconds, largest_dose);
+    if (added.reach > 0.0) {
+        contacts_.push_back(added);
+    }
+}
+
+void ContactList::add_scene(const ContactParams& params, const Settings& settings) {
+    const double begin = std::max(settings.begin_s, params.begin_s);
+    const double end = std::min(settings.end_s, params.end_s);
+    if (!(begin < end)) {
+        return;
+    }
+    const glm::dvec3 way = params.to_mm.value_or(params.from_mm) - params.from_mm;
+    const auto place = [&](double time) {
+        return params.from_mm + way * ((time - params.begin_s) / (params.end_s - params.begin_s));
+    };
+    add({.from = place(begin), .to = place(end), .sigma = params.sigma_mm, .action = params.action},
+        params.power, end - begin, settings.gain);
+}
+
+void ContactList::add_host(const HostValues& values, const Settings& settings) {
+    const HostValues::Entry* given = values.find("tissue.contacts");
+    if (given == nullptr) {
+        return;
+    }
+    const HostValues::Entry* before = values.find("tissue.contacts_from");
+    const double seconds = settings.end_s - settings.begin_s;
+    const std::size_t count = given->values.size() / floats_per_contact;
+    unusable_ += given->values.size() % floats_per_contact != 0 ? 1 : 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto f = std::span(given->values).subspan(i * floats_per_contact, floats_per_contact);
+        Contact contact{.to = {f[0], f[1], f[2]}, .sigma = f[4]};
+        const std::optional<ContactAction> action = action_of(f[5], f[3]);
+        if (!action || !finite(contact.to) || !std::isfinite(f[3]) || !std::isfinite(f[4])) {
+            ++unusable_;
+            continue;
+        }
+        contact.action = *action;
+        contact.from = contact.to;
+        const double power = action == ContactAction::dissect ? std::abs(f[3]) : f[3];
+        if (before != nullptr && before->values.size() >= (i + 1) * floats_per_place) {
+            const auto b = std::span(before->values).subspan(i * floats_per_place, floats_per_place);
+            const glm::dvec3 from(b[0], b[1], b[2]);
+            contact.from = finite(from) ? from : contact.to;
+        } else if (i < last_.size() && last_[i].on && last_[i].action == *action &&
+                   glm::distance(last_[i].at, contact.to) <= settings.max_speed * seconds) {
+            contact.from = last_[i].at;
+        }
+        add(contact, power, seconds, settings.gain);
+    }
+}
+
+void ContactList::collect(std::span<const ContactParams> scene, const HostValues* values,
+                          const Settings& settings) {
+    contacts_.clear();
+    unusable_ = 0;
+    for (const ContactParams& params : scene) {
+        add_scene(params, settings);
+    }
+    if (values != nullptr) {
+        add_host(*values, settings);
+    }
+    std::ranges::sort(contacts_, {}, rank);
+}
+
+void ContactList::keep_places(const HostValues* values) {
+    const HostValues::Entry* given = values == nullptr ? nullptr : values->find("tissue.contacts");
+    last_.clear();
+    if (given == nullptr) {
+        return;
+    }
+    for (std::size_t i = 0; i + floats_per_contact <= given->values.size(); i += floats_per_contact) {
+        const std::span<const float> f = std::span(given->values).subspan(i, floats_per_contact);
+        const glm::dvec3 at(f[0], f[1], f[2]);
+        const std::optional<ContactAction> action = action_of(f[5], f[3]);
+        const bool on = action && finite(at) && std::isfinite(f[3]) && f[3] != 0.0F;
+        last_.push_back({at, action.value_or(ContactAction::coagulate), on});
+    }
+}
+
+}  // namespace viscera::tissue

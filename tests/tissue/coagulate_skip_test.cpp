@@ -1,0 +1,192 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "engine/io/exr.h"
+#include "engine/runtime/frame_writer.h"
+#include "tests/tissue/energy_stage.h"
+
+namespace viscera::test {
+namespace {
+
+using reference::Action;
+using HostContact = EnergyStage::HostContact;
+
+std::vector<HostContact> moving(int i) {
+    return {{10.0 + 0.5 * i, 12.0, 0.0, 3.0, 1.2, Action::coagulate},
+            {32.0, 32.0 - 0.4 * i, 0.0, 4.0, 1.0, i < 8 ? Action::dissect : Action::coagulate}};
+}
+
+TEST(CoagulateSkip, WhatContactsReachIsAllThatIsDrawnAndThePictureIsTheSame) {
+    for (const bool seam : {false, true}) {
+        Plane plane;
+        plane.seam = seam;
+        EnergyStage parts({}, plane, "parts");
+        EnergyStage whole(nlohmann::json{{"mesh", nullptr}}, plane, "parts");
+        for (int i = 0; i < 16; ++i) {
+            for (EnergyStage* stage : {&parts, &whole}) {
+                stage->stage.make_current();
+                stage->contacts(i == 5 ? std::vector<HostContact>{} : moving(i));
+                const PassReport report = stage->frame(i / 60.0);
+                const bool idle = i == 0 || i == 5;
+                EXPECT_EQ(report.status, idle              ? PassStatus::idle
+                                         : stage == &parts ? PassStatus::reduced
+                                                           : PassStatus::run);
+                if (stage == &parts && !idle) {
+                    EXPECT_EQ(report.reason, "only what contacts reach");
+                }
+            }
+            parts.stage.make_current();
+            const Image in_parts = parts.energy();
+            whole.stage.make_current();
+            EXPECT_TRUE(in_parts.data == whole.energy().data) << "frame " << i;
+        }
+        parts.stage.make_current();
+    }
+}
+
+TEST(CoagulateSkip, WithoutContactsThereIsNothingToDo) {
+    EnergyStage stage;
+    stage.frame(0.0);
+    EXPECT_EQ(stage.frame(0.1).status, PassStatus::idle);
+    stage.contacts({{20, 20, 0, 2.0, 2.0}});
+    EXPECT_EQ(stage.frame(0.2).status, PassStatus::reduced);
+    const Image burnt = stage.energy();
+    stage.contacts({});
+    PassReport report = stage.frame(0.3);
+    EXPECT_EQ(report.status, PassStatus::idle);
+    EXPECT_EQ(report.reason, "nothing touches the tissue");
+    EXPECT_TRUE(stage.energy().data == burnt.data) << "it stays";
+    stage.contacts({{20, 20, 0, 2.0, 2.0}});
+    EXPECT_EQ(stage.frame(0.3).reason, "no time has passed");
+    EXPECT_TRUE(stage.energy().data == burnt.data);
+    // In the air, off, or as wide as nothing.
+    stage.contacts({{20, 20, 500, 2.0, 2.0}, {20, 20, 0, 0.0, 2.0}, {20, 20, 0, 1.0, 0.0}});
+    report = stage.frame(0.4);
+    EXPECT_EQ(report.status, PassStatus::idle);
+    EXPECT_EQ(report.reason, "no contact reaches the tissue");
+    EXPECT_TRUE(stage.energy().data == burnt.data);
+}
+
+TEST(CoagulateSkip, ALongPauseIsNotADose) {
+    EnergyStage stage;
+    stage.frame(0.0);
+    stage.frame(10.0);
+    stage.contacts({{20, 20, 0, 0.4, 2.0}});
+    stage.frame(10.5);
+    double highest = 0.0;
+    stage.each_texel([&](const glm::dvec3&, double e) { highest = std::max(highest, e); });
+    EXPECT_LE(highest, 0.2 + 1e-6);
+    EXPECT_GE(highest, 0.19);
+}
+
+TEST(CoagulateSkip, TimeThatGoesBackBeginsAnew) {
+    EnergyStage stage;
+    stage.contacts({{20, 20, 0, 1.0, 2.0}});
+    stage.frame(0.0);
+    stage.frame(0.25);
+    const Image once = stage.energy();
+    stage.frame(0.5);
+    EXPECT_FALSE(stage.energy().data == once.data);
+    stage.frame(0.0);
+    stage.each_texel([](const glm::dvec3&, double e) { ASSERT_EQ(e, 0.0); });
+    stage.frame(0.25);
+    EXPECT_TRUE(stage.energy().data == once.data);
+}
+
+TEST(CoagulateSkip, AParameterChangedOnTheWayKeepsWhatIsBurnt) {
+    EnergyStage stage;
+    stage.contacts({{20, 20, 0, 1.0, 2.0}});
+    stage.frame(0.0);
+    stage.frame(0.25);
+    const Image before = stage.energy();
+    stage.stage.renderer().set_parameter("coagulate", "/max_energy", 2.0);
+    stage.frame(0.5);
+    EXPECT_TRUE(stage.energy().data == before.data) << "its first frame has no time";
+    stage.frame(0.75);
+    EXPECT_FALSE(stage.energy().data == before.data);
+}
+
+TEST(CoagulateSkip, LimitsConfineWhatChanges) {
+    EnergyStage stage(nlohmann::json{{"limit_to", {{"point_mm", {20, 20, 0}}, {"radius_mm", 3.0}}}});
+    stage.contacts({{21, 20, 0, 2.0, 4.0}});
+    stage.frame(0.0);
+    stage.frame(0.25);
+    const auto expect_within = [&](double radius) {
+        stage.each_texel([&](const glm::dvec3& p, double e) {
+            const double d = glm::distance(p, glm::dvec3(20, 20, 0));
+            if (std::abs(d - radius) > 1e-4) {
+                ASSERT_EQ(e > 0.0, d < radius) << d;
+            }
+        });
+    };
+    expect_within(3.0);
+    stage.values.set("tissue.limit_to", std::vector<float>{20, 20, 0, 5});
+    stage.frame(0.5);
+    expect_within(5.0);
+    stage.values.set("tissue.limit_to", std::vector<float>{20, 20, 0, std::nanf("")});
+    const Image before = stage.energy();
+    stage.frame(0.75);
+    EXPECT_TRUE(stage.energy().data == before.data) << "a limit that is no number lets nothing through";
+}
+
+/// Frames 0 to 5, saved, loaded by another renderer, and on to 10: as if there had been no pause.
+TEST(CoagulateSkip, ASavedStateGoesOnAsIfNothingHadHappened) {
+    const auto folder = std::filesystem::temp_directory_path() / "viscera_tissue_test" / "saved";
+    std::filesystem::create_directories(folder);
+    const nlohmann::json contacts{{{"from_mm", {10, 12, 0}},
+                                   {"to_mm", {30, 25, 0}},
+                                   {"begin_s", 0.02},
+                                   {"end_s", 0.15},
+                                   {"power", 6.0},
+                                   {"sigma_mm", 1.7}},
+                                  {{"from_mm", {25, 15, 0}}, {"power", 3.0}, {"action", "dissect"}}};
+    EnergyStage through(nlohmann::json{{"contacts", contacts}});
+    const auto render = [](EnergyStage& stage, std::uint64_t index) {
+        Frame frame = stage.stage.renderer().frame(index);
+        frame.values = &stage.values;
+        stage.stage.renderer().render(frame);
+    };
+    for (std::uint64_t i = 0; i <= 10; ++i) {
+        if (i == 5) {
+            FrameWriter writer({.folder = folder}, {});
+            through.stage.renderer().set_dump(
+                {.kind = DumpRequest::Kind::names, .names = {"tissue.energy"}},
+                [&](CapturedFrame&& frame) { writer.submit(std::move(frame)); });
+            render(through, i);
+            through.stage.renderer().finish_captures();
+            through.stage.renderer().set_dump({}, {});
+            writer.finish();
+            continue;
+        }
+        render(through, i);
+    }
+    const Image expected = through.energy();
+    const auto file = folder / "0005.tissue.energy.exr";
+    ASSERT_TRUE(std::filesystem::exists(file));
+
+    EnergyStage resumed(nlohmann::json{{"contacts", contacts}, {"load", {{"file", file.string()}}}});
+    for (std::uint64_t i = 6; i <= 10; ++i) {
+        render(resumed, i);
+    }
+    EXPECT_TRUE(resumed.energy().data == expected.data);
+    EXPECT_TRUE(io::read_exr(file).front().image.format == PixelFormat::r32f);
+}
+
+TEST(CoagulateSkip, AStateOfAnotherSizeIsRefused) {
+    const auto file = std::filesystem::temp_directory_path() / "viscera_tissue_test" / "small.exr";
+    const io::ExrPart part{.name = "tissue.energy", .image = make_image(16, 16, PixelFormat::r32f)};
+    io::write_exr(file, std::span(&part, 1));
+    EnergyStage stage(nlohmann::json{{"load", {{"file", file.string()}}}});
+    try {
+        stage.frame(0.0);
+        FAIL() << "no error";
+    } catch (const Error& error) {
+        EXPECT_NE(std::string(error.what()).find("small.exr"), std::string::npos);
+        EXPECT_NE(std::string(error.what()).find("16 x 16"), std::string::npos);
+    }
+}
+
+}  // namespace
+}  // namespace viscera::test
