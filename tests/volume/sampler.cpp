@@ -26,25 +26,53 @@ void main() {
 }
 )";
 
-ShaderReader with_sampler() {
-    return [engine = embedded_shader_reader()](std::string_view name) {
-        return name == "sampler.frag" ? std::optional(std::string(fragment)) : engine(name);
+/// A fetch of the texture unit, and what it is with weights of 8 bits.
+constexpr std::string_view own_fetch = "float linear_texel(vec3 place) {\n    return textureLod";
+constexpr std::string_view eight_bit_fetch = R"(float linear_texel(vec3 place) {
+    ivec3 last = textureSize(u_volume, 0) - 1;
+    vec3 p = place * vec3(last + 1) - 0.5;
+    ivec3 low = ivec3(floor(p));
+    vec3 a = floor((p - floor(p)) * 256.0 + 0.5) / 256.0;
+    float sum = 0.0;
+    for (int corner = 0; corner < 8; ++corner) {
+        ivec3 step = ivec3(corner & 1, (corner >> 1) & 1, corner >> 2);
+        vec3 w = mix(1.0 - a, a, vec3(step));
+        sum += w.x * w.y * w.z * texelFetch(u_volume, clamp(low + step, ivec3(0), last), 0).r;
+    }
+    return sum;
+}
+
+float unused_texel(vec3 place) {
+    return textureLod)";
+
+ShaderReader with_sampler(VolumeSampler::Weights weights) {
+    return [engine = embedded_shader_reader(), weights](std::string_view name) {
+        if (name == "sampler.frag") {
+            return std::optional(std::string(fragment));
+        }
+        std::optional<std::string> text = engine(name);
+        if (weights == VolumeSampler::Weights::eight_bits && name == "volume/storage.glsl") {
+            text->replace(text->find(own_fetch), own_fetch.size(), eight_bit_fetch);
+        }
+        return text;
     };
 }
 
-gl::Program make_program(const gl::Functions& gl, std::vector<std::string> defines, bool atlas) {
+gl::Program make_program(const gl::Functions& gl, VolumeSampler::Weights weights,
+                         std::vector<std::string> defines, bool atlas) {
     if (atlas) {
         defines.emplace_back("STORAGE_ATLAS");
     }
-    const ShaderReader reader = with_sampler();
+    const ShaderReader reader = with_sampler(weights);
     return {gl, expand_shader("common/fullscreen.vert", defines, reader),
             expand_shader("sampler.frag", defines, reader), "sampler"};
 }
 
 }  // namespace
 
-VolumeSampler::VolumeSampler()
-    : context_(create_context(Backend::osmesa, {.debug = true})),
+VolumeSampler::VolumeSampler(Weights weights)
+    : weights_(weights),
+      context_(create_context(Backend::osmesa, {.debug = true})),
       gl_(gl::Functions::load(context_->proc_address())),
       assets_(std::make_unique<Assets>(log_)),
       no_vertices_(std::in_place, *gl_) {}
@@ -76,7 +104,7 @@ std::vector<VolumeSampler::Sample> VolumeSampler::sample(volume::GpuVolume& gpu,
     const gl::Framebuffer framebuffer(*gl_, output, "samples");
     framebuffer.bind();
     gl::apply(*gl_, gl::overwrite_state, {0, 0, row, height});
-    const gl::Program program = make_program(*gl_, reconstruction.defines(), gpu.is_atlas());
+    const gl::Program program = make_program(*gl_, weights_, reconstruction.defines(), gpu.is_atlas());
     program.use();
     gpu.set(program);
     const gl::Sampler filtered(*gl_, {.filter = reconstruction.texture_filter()});

@@ -19,7 +19,10 @@ namespace viscera::test {
 /// own.
 class VolumeSampler {
   public:
-    VolumeSampler();
+    /// How the texture unit weighs: as it does here, in full precision, or in 8 bits as on most GPUs.
+    enum class Weights { own, eight_bits };
+
+    explicit VolumeSampler(Weights weights = Weights::own);
 
     struct Sample {
         glm::dvec3 gradient{0.0};  ///< per texture coordinate
@@ -36,6 +39,7 @@ class VolumeSampler {
     [[nodiscard]] Assets& assets() { return *assets_; }
 
   private:
+    Weights weights_;
     std::unique_ptr<Context> context_;
     std::unique_ptr<const gl::Functions> gl_;
     Log log_;

@@ -21,8 +21,17 @@ namespace {
 using volume::ReconstructionFilter;
 using volume::ReconstructionParams;
 
-constexpr int voxels = 81;
-constexpr double spacing = 2.0 / (voxels - 1);
+/// Samples per axis of the signals.
+constexpr std::array signal_sizes{41, 81, 161};
+
+double spacing_of(int voxels) {
+    return 2.0 / (voxels - 1);
+}
+
+/// Place of texture coordinates in the signal's own frame.
+glm::dvec3 signal_place(const glm::dvec3& texture, int voxels) {
+    return spacing_of(voxels) * (static_cast<double>(voxels) * texture - 0.5) - 1.0;
+}
 
 /// The test signal of Marschner and Lobb, "An evaluation of reconstruction filters for volume rendering"
 /// (1994), on [-1, 1]^3.
@@ -32,7 +41,18 @@ double marschner_lobb(const glm::dvec3& p) {
     return (1.0 - std::sin(0.5 * pi * p.z) + 0.25 * (1.0 + wave)) / 2.5;
 }
 
-volume::Source make_signal() {
+/// Sum of the signal's three derivatives.
+double marschner_lobb_slope(const glm::dvec3& p) {
+    constexpr double pi = std::numbers::pi;
+    const double r = std::hypot(p.x, p.y);
+    const double radial =
+        0.25 * std::sin(12.0 * pi * std::cos(0.5 * pi * r)) * 12.0 * pi * 0.5 * pi * std::sin(0.5 * pi * r);
+    const double outwards = r > 0.0 ? (p.x + p.y) / r : 0.0;
+    return (radial * outwards - 0.5 * pi * std::cos(0.5 * pi * p.z)) / 2.5;
+}
+
+volume::Source make_signal(int voxels) {
+    const double spacing = spacing_of(voxels);
     std::vector<float> values;
     for (int z = 0; z < voxels; ++z) {
         for (int y = 0; y < voxels; ++y) {
@@ -46,7 +66,7 @@ volume::Source make_signal() {
     volume.voxels.assign(bytes.begin(), bytes.end());
     volume::Source source;
     source.statistics = statistics(volume);
-    source.key = 1;
+    source.key = static_cast<std::uint64_t>(voxels);
     source.owned = std::make_shared<const Volume>(std::move(volume));
     return source;
 }
@@ -111,19 +131,24 @@ class Drawing {
         return samples;
     }
 
-    /// Root mean square difference to the signal.
-    [[nodiscard]] double error() const {
+    /// Root mean square difference to the signal, or to the sum of its derivatives as a share of their own
+    /// root mean square.
+    [[nodiscard]] double error(int voxels, bool gradient) const {
         const Image image = gl::read_texture(lab_.gl(), target_);
-        double sum = 0.0;
+        double squares = 0.0;
+        double whole = 0.0;
         for (int y = 0; y < image.height; ++y) {
             for (int x = 0; x < image.width; ++x) {
-                const glm::dvec3 place(image.at(x, y, 0), image.at(x, y, 1), image.at(x, y, 2));
-                const glm::dvec3 p = spacing * (static_cast<double>(voxels) * place - 0.5) - 1.0;
-                const double off = static_cast<double>(image.at(x, y, 3)) - marschner_lobb(p);
-                sum += off * off;
+                const glm::dvec3 p =
+                    signal_place({image.at(x, y, 0), image.at(x, y, 1), image.at(x, y, 2)}, voxels);
+                const double due =
+                    gradient ? marschner_lobb_slope(p) * spacing_of(voxels) * voxels : marschner_lobb(p);
+                const double off = static_cast<double>(image.at(x, y, 3)) - due;
+                squares += off * off;
+                whole += gradient ? due * due : 1.0;
             }
         }
-        return std::sqrt(sum / (static_cast<double>(image.width) * image.height));
+        return std::sqrt(squares / whole);
     }
 
   private:
@@ -149,44 +174,68 @@ gl::Program make_program(Lab& lab, const ReconstructionParams& params, bool atla
 
 }  // namespace
 
+namespace {
+
+/// One filter on one signal.
+struct Shot {
+    FilterCase filter;
+    int voxels;
+    volume::Storage storage;
+    bool gradient;
+
+    [[nodiscard]] bool is_base() const {
+        return filter.filter == ReconstructionFilter::linear && !gradient &&
+               storage == volume::Storage::texture_3d;
+    }
+    [[nodiscard]] std::string name() const {
+        return std::string(filter.name) + (storage == volume::Storage::atlas ? ", atlas" : "") +
+               (gradient ? ", gradient" : "") + ", " + std::to_string(voxels);
+    }
+};
+
+/// `linear`: the cost of one fetch of the texture unit, which is set by its own row.
+void run_shot(Lab& lab, Assets& assets, const volume::Source& signal, const Shot& shot, Samples& linear) {
+    const ReconstructionParams params{shot.filter.filter, shot.filter.prefilter};
+    std::shared_ptr<const volume::Source> coefficients;
+    if (params.uses_coefficients()) {
+        coefficients = volume::load_coefficients(assets, signal, 0);
+    }
+    const volume::GpuVolume gpu(lab.gl(), coefficients ? *coefficients : signal, 0, shot.storage);
+    const gl::Program program = make_program(lab, params, gpu.is_atlas(), shot.gradient);
+    Drawing drawing(lab, program);
+    const Samples samples = drawing.measure(gpu, params);
+    if (shot.is_base()) {
+        linear = samples;
+    }
+    const double drawn = static_cast<double>(lab.options().width) * lab.options().height;
+    lab.add({.group = "filters",
+             .name = shot.name(),
+             .samples = samples,
+             .rms = drawing.error(shot.voxels, shot.gradient),
+             .error_of = shot.gradient ? "its derivatives, relative" : "Marschner-Lobb",
+             .value = 1e6 * times(samples).median / drawn,
+             .unit = shot.gradient ? "ns per gradient" : "ns per sample",
+             .ceiling = linear.empty() ? "" : "linear",
+             .base = linear});
+}
+
+}  // namespace
+
 void run_filters(Lab& lab) {
     Log log;
     Assets assets(log);
-    const volume::Source signal = make_signal();
-    const double samples_drawn = static_cast<double>(lab.options().width) * lab.options().height;
-    Samples linear;
-    for (const volume::Storage storage : {volume::Storage::texture_3d, volume::Storage::atlas}) {
-        for (const FilterCase& filter : filter_cases) {
-            for (const bool gradient : {false, true}) {
-                const bool atlas = storage == volume::Storage::atlas;
-                if (atlas && (gradient || filter.prefilter)) {
-                    continue;
+    for (const int voxels : signal_sizes) {
+        const volume::Source signal = make_signal(voxels);
+        Samples linear;
+        for (const volume::Storage storage : {volume::Storage::texture_3d, volume::Storage::atlas}) {
+            for (const FilterCase& filter : filter_cases) {
+                for (const bool gradient : {false, true}) {
+                    const bool atlas = storage == volume::Storage::atlas;
+                    // Storage is a matter of cost, of which one size tells enough.
+                    if (!atlas || (!gradient && !filter.prefilter && voxels == 81)) {
+                        run_shot(lab, assets, signal, {filter, voxels, storage, gradient}, linear);
+                    }
                 }
-                const ReconstructionParams params{filter.filter, filter.prefilter};
-                std::shared_ptr<const volume::Source> coefficients;
-                if (params.uses_coefficients()) {
-                    coefficients = volume::load_coefficients(assets, signal, 0);
-                }
-                const volume::GpuVolume gpu(lab.gl(), coefficients ? *coefficients : signal, 0, storage);
-                const gl::Program program = make_program(lab, params, atlas, gradient);
-                Drawing drawing(lab, program);
-                const Samples samples = drawing.measure(gpu, params);
-                if (filter.filter == ReconstructionFilter::linear && !gradient && !atlas) {
-                    linear = samples;
-                }
-                Row row{.group = "filters",
-                        .name = std::string(filter.name) + (atlas ? ", atlas" : "") +
-                                (gradient ? ", gradient" : ""),
-                        .samples = samples,
-                        .value = 1e6 * times(samples).median / samples_drawn,
-                        .unit = gradient ? "ns per gradient" : "ns per sample",
-                        .ceiling = linear.empty() ? "" : "linear",
-                        .base = linear};
-                if (!gradient) {
-                    row.rms = drawing.error();
-                    row.error_of = "Marschner-Lobb at 81 voxels";
-                }
-                lab.add(std::move(row));
             }
         }
     }
