@@ -117,6 +117,7 @@ std::vector<std::byte> all_coefficients(Assets& assets, const Source& source, in
     const bool keep = source.live == nullptr && assets.disk_cache().enabled();
     const std::uint64_t key = keep ? Hash()
                                          .add(dims)
+                                         .add(volume.grid.shape.wrap_axis())
                                          .add(volume.type)
                                          .add(volume.channels)
                                          .add(channel)

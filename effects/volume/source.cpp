@@ -32,19 +32,14 @@ std::uint64_t key_of(const GeometryParams& g) {
         .value();
 }
 
-/// A file with the geometry that the scene gives it. Voxels are made fewer after that: along a ring the last
-/// and the first are neighbours.
+/// A file, with the geometry that the scene gives it.
 Volume load_file(Assets& assets, const SourceParams& params) {
-    const io::VolumeOptions options{
-        .progress = assets.progress("loading " + params.file.path.filename().string()),
-        .reduce = params.geometry ? 1 : params.reduce};
-    Volume volume = io::load_volume(params.file.path, options, assets.log());
+    io::VolumeOptions options{.progress = assets.progress("loading " + params.file.path.filename().string()),
+                              .reduce = params.reduce};
     if (params.geometry) {
-        volume.grid = params.geometry->applied_to(volume.grid);
-        volume.grid.validate(volume.source);
-        volume = reduced(volume, params.reduce);
+        options.regrid = [&](const VolumeGrid& grid) { return params.geometry->applied_to(grid); };
     }
-    return volume;
+    return io::load_volume(params.file.path, options, assets.log());
 }
 
 /// One object for all versions, or each would leave another behind.

@@ -94,7 +94,8 @@ struct VolumeStatistics {
 [[nodiscard]] VolumeStatistics statistics(const Volume& volume, int channel = 0, int bins = 256);
 
 /// The volume with every `factor` voxels of each axis averaged into one (the last may average fewer); labels
-/// take the first voxel instead of a mean. Keeps the box in the world, but for the cut-off rest. factor >= 1.
+/// take the first voxel instead of a mean. Keeps the box in the world, but for the cut-off rest; curvilinear
+/// shapes wholly (engine/core/volume_reduce_curvilinear.h). factor >= 1.
 [[nodiscard]] Volume reduced(const Volume& volume, int factor, bool labels = false);
 
 /// A volume that changes while it is shown. The host keeps it, passes it with each frame, and tells what it

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "engine/core/volume.h"
+#include "engine/core/volume_reduce_curvilinear.h"
 
 namespace viscera {
 
@@ -124,6 +125,9 @@ Volume make_result(const Volume& volume, const glm::ivec3& factor, bool labels) 
 Volume reduced(const Volume& volume, int factor, bool labels) {
     if (factor <= 1) {
         return volume;
+    }
+    if (volume.grid.curvilinear()) {
+        return reduced_curvilinear(volume, factor, labels);
     }
     // An axis shorter than the factor becomes one voxel of its own length, no longer.
     const glm::ivec3 factors = glm::min(glm::ivec3(factor), volume.grid.dims);

@@ -190,6 +190,22 @@ Json describe_values(const VolumeStatistics& values) {
     return result;
 }
 
+/// Extents as files and scenes give them: degrees and mm.
+Json describe_shape(const VolumeShape& shape) {
+    Json result = {{"kind", to_string(shape.kind)},
+                   {"r_min_mm", shape.r_min_mm},
+                   {"r_max_mm", shape.r_max_mm},
+                   {"first_angle_deg", glm::degrees(shape.first_angle_rad)},
+                   {"angle_deg", glm::degrees(shape.angle_rad)},
+                   {"wrap", shape.wrap}};
+    if (shape.kind == VolumeKind::cylindrical) {
+        result["height_mm"] = shape.height_mm;
+    } else {
+        result["latitude_deg"] = glm::degrees(shape.latitude_rad);
+    }
+    return result;
+}
+
 Json describe_volume(const std::filesystem::path& file, Log& log) {
     constexpr int bins = 32;
     const Volume volume = load_volume(file, {}, log);
@@ -211,6 +227,9 @@ Json describe_volume(const std::filesystem::path& file, Log& log) {
                    {"intercept", volume.intercept},
                    {"unit", volume.unit},
                    {"channels", std::move(channels)}};
+    if (grid.curvilinear()) {
+        result["geometry"] = describe_shape(grid.shape);
+    }
     if (volume.narrowing_error > 0.0) {
         result["narrowing_error"] = volume.narrowing_error;
     }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -15,6 +16,9 @@ struct VolumeOptions {
     /// > 1: each `reduce` voxels of an axis become one (mean; labels: the first).
     int reduce = 1;
     bool labels = false;
+    /// What becomes of the grid that the file gives before its voxels are read: for a geometry that the file
+    /// does not hold. Empty: it stays.
+    std::function<VolumeGrid(const VolumeGrid&)> regrid{};
     /// Bytes that the voxels may take in memory; 0: what the machine has available now.
     std::uint64_t memory_limit = 0;
     /// DICOM folders with several series: SeriesInstanceUID; empty: the one with most slices, the log says
@@ -38,8 +42,8 @@ struct VolumeOptions {
 /// Whether load_volume would take the file for a volume, judged by name and first bytes.
 [[nodiscard]] bool is_volume(const std::filesystem::path& file);
 
-/// Writes .nrrd, .mha or .nii.gz (compressed) by extension, orientation and rescale included. Throws
-/// Error(file).
+/// Writes .nrrd, .mha or .nii.gz (compressed) by extension, orientation and rescale included; curvilinear
+/// volumes only as .nrrd. Throws Error(file).
 void write_volume(const Volume& volume, const std::filesystem::path& file);
 
 }  // namespace viscera::io

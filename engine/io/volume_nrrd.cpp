@@ -5,6 +5,7 @@
 #include "engine/core/error.h"
 #include "engine/io/volume_itk.h"
 #include "engine/io/volume_readers.h"
+#include "engine/io/volume_shape_keys.h"
 #include "engine/io/volume_text.h"
 #include "engine/io/words.h"
 
@@ -14,7 +15,7 @@ namespace {
 
 struct NrrdHeader {
     std::map<std::string, std::string, std::less<>> fields;  ///< lower case, without spaces: "datafile"
-    std::map<std::string, std::string, std::less<>> values;  ///< key:=value
+    KeyValues values;                                        ///< key:=value
     std::uint64_t end = 0;                                   ///< first byte behind the empty line
     bool has_voxels = false;                                 ///< an empty line ended the header
 
@@ -238,6 +239,7 @@ Volume read_nrrd(const Reading& reading) {
     if (const auto unit = header.values.find("unit"); unit != header.values.end()) {
         head.volume.unit = unit->second;
     }
+    head.volume.grid.shape = shape_of_keys(header.values, reading);
     const std::uint64_t due = head.bytes(reading);
     const std::optional<Payload> payload = axes.is_plain ? payload_of(header, due, reading) : std::nullopt;
     if (payload) {

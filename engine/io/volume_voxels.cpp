@@ -127,11 +127,24 @@ std::uint64_t kept_bytes(const VolumeHead& head, int factor) {
            static_cast<std::uint64_t>(head.volume.channels) * viscera::bytes_of(kept_type(head.type));
 }
 
+/// Whether a volume must be in memory whole before it can be reduced: intervals of a curvilinear one do not
+/// end with the slabs that are read.
+bool needs_all(const VolumeHead& head) {
+    return head.volume.grid.curvilinear();
+}
+
+/// Bytes in memory of what is read before it is reduced.
+std::uint64_t working_bytes(const VolumeHead& head, int factor) {
+    if (factor == 1) {
+        return 0;
+    }
+    return needs_all(head) ? kept_bytes(head, 1) : slice_bytes(head) * static_cast<std::uint64_t>(factor);
+}
+
 /// The smallest factor with which the volume fits; 0 when none does.
 int fitting_reduce(const VolumeHead& head, std::uint64_t beside, std::uint64_t available) {
     for (int factor = 2; factor <= 64; ++factor) {
-        const std::uint64_t slab = slice_bytes(head) * static_cast<std::uint64_t>(factor);
-        if (beside + slab + kept_bytes(head, factor) <= available) {
+        if (beside + working_bytes(head, factor) + kept_bytes(head, factor) <= available) {
             return factor;
         }
     }
@@ -205,6 +218,11 @@ Volume read_planar(VolumeHead head, Converter& converter, const Reading& reading
     return reduced(volume, reading.options.reduce, reading.options.labels);
 }
 
+Volume read_whole_and_reduce(VolumeHead head, Converter& converter, const Reading& reading) {
+    const Volume volume = read_whole(std::move(head), converter, reading);
+    return reduced(volume, reading.options.reduce, reading.options.labels);
+}
+
 }  // namespace
 
 std::size_t bytes_of(FileScalar type) {
@@ -228,8 +246,7 @@ void require_memory(const VolumeHead& head, std::uint64_t beside, const Reading&
     const std::uint64_t limit = reading.options.memory_limit;
     const std::uint64_t available = limit > 0 ? limit : available_memory();
     const int factor = std::max(1, reading.options.reduce);
-    const std::uint64_t slab = factor > 1 ? slice_bytes(head) * static_cast<std::uint64_t>(factor) : 0;
-    const std::uint64_t needed = kept_bytes(head, factor) + slab + beside;
+    const std::uint64_t needed = kept_bytes(head, factor) + working_bytes(head, factor) + beside;
     if (needed <= available) {
         return;
     }
@@ -243,6 +260,9 @@ void require_memory(const VolumeHead& head, std::uint64_t beside, const Reading&
 }
 
 Volume read_voxels(VolumeHead head, const ReadBytes& read, const Reading& reading) {
+    if (reading.options.regrid) {
+        head.volume.grid = reading.options.regrid(head.volume.grid);
+    }
     static_cast<void>(head.bytes(reading));
     head.volume.type = kept_type(head.type);
     head.volume.source = reading.file.string();
@@ -250,6 +270,7 @@ Volume read_voxels(VolumeHead head, const ReadBytes& read, const Reading& readin
     reading.progress(0.0);
     Converter converter(head, read);
     Volume volume = head.planar                  ? read_planar(std::move(head), converter, reading)
+                    : needs_all(head)            ? read_whole_and_reduce(std::move(head), converter, reading)
                     : reading.options.reduce > 1 ? read_reduced(head, converter, reading)
                                                  : read_whole(std::move(head), converter, reading);
     volume.narrowing_error = converter.narrowing_error();

@@ -3,13 +3,14 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cstring>
 #include <limits>
 
 #include "engine/core/error.h"
+#include "engine/core/json_text.h"
 #include "engine/io/file_bytes.h"
 #include "engine/io/volume.h"
+#include "engine/io/volume_shape_keys.h"
 #include "engine/io/volume_text.h"
 
 namespace viscera::io {
@@ -20,15 +21,9 @@ namespace {
     throw Error(ErrorCode::file, file.string(), message);
 }
 
-/// The shortest text that reads back as the same number.
-std::string text_of(double value) {
-    std::array<char, 32> buffer{};
-    const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
-    return {buffer.data(), end};
-}
-
 std::string text_of(const glm::dvec3& v, std::string_view between = " ") {
-    return text_of(v.x) + std::string(between) + text_of(v.y) + std::string(between) + text_of(v.z);
+    return number_text(v.x) + std::string(between) + number_text(v.y) + std::string(between) +
+           number_text(v.z);
 }
 
 std::string text_of(const glm::ivec3& v) {
@@ -92,13 +87,13 @@ std::string nrrd(const Volume& volume, const std::filesystem::path& file) {
     text += "\nkinds: " + std::string(many ? "vector " : "") + "domain domain domain";
     text += "\nendian: little\nencoding: gzip\nspace origin: (" + text_of(volume.grid.origin_mm, ",") + ")\n";
     if (volume.slope != 1.0 || volume.intercept != 0.0) {
-        text += "rescale_slope:=" + text_of(volume.slope) +
-                "\nrescale_intercept:=" + text_of(volume.intercept) + "\n";
+        text += "rescale_slope:=" + number_text(volume.slope) +
+                "\nrescale_intercept:=" + number_text(volume.intercept) + "\n";
     }
     if (!volume.unit.empty()) {
         text += "unit:=" + one_line(volume.unit) + "\n";
     }
-    return text + "\n" + deflated("", volume.voxels, Wrapper::gzip, file);
+    return text + keys_of(volume.grid.shape) + "\n" + deflated("", volume.voxels, Wrapper::gzip, file);
 }
 
 std::string meta_image(const Volume& volume, const std::filesystem::path& file) {
@@ -117,8 +112,8 @@ std::string meta_image(const Volume& volume, const std::filesystem::path& file) 
             "\nCenterOfRotation = 0 0 0\nElementSpacing = " + text_of(grid.spacing_mm) +
             "\nDimSize = " + text_of(grid.dims);
     if (volume.slope != 1.0 || volume.intercept != 0.0) {
-        text += "\nElementToIntensityFunctionSlope = " + text_of(volume.slope) +
-                "\nElementToIntensityFunctionOffset = " + text_of(volume.intercept);
+        text += "\nElementToIntensityFunctionSlope = " + number_text(volume.slope) +
+                "\nElementToIntensityFunctionOffset = " + number_text(volume.intercept);
     }
     if (!volume.unit.empty()) {
         text += "\nUnit = " + one_line(volume.unit);
@@ -182,6 +177,9 @@ void write_volume(const Volume& volume, const std::filesystem::path& file) {
     const std::string name = lower(file.filename().string());
     if (name.ends_with(".nrrd")) {
         write_file(file, nrrd(volume, file));
+    } else if (volume.grid.curvilinear()) {
+        fail(file, "a volume that is " + std::string(to_string(volume.grid.shape.kind)) +
+                       " is written as .nrrd, which can hold its geometry");
     } else if (name.ends_with(".mha")) {
         write_file(file, meta_image(volume, file));
     } else if (name.ends_with(".nii.gz")) {
