@@ -16,16 +16,16 @@ constexpr std::uint32_t none = MeshAdjacency::none;
 
 class MapMaker {
   public:
-    MapMaker(const MeshData& mesh, std::span<const std::uint32_t> place, int size)
-        : mesh_(mesh), place_(place), adjacency_(find_adjacency(mesh.indices, place)) {
+    MapMaker(const TexelSurface& mesh, const glm::ivec2& size)
+        : mesh_(mesh), adjacency_(find_adjacency(mesh.indices, mesh.place)) {
         map_.size = size;
-        map_.texels.resize(static_cast<std::size_t>(size) * static_cast<std::size_t>(size));
+        map_.texels.resize(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y));
         map_.faults.non_manifold_edges = adjacency_.non_manifold_edges;
     }
 
     TexelMap make(const Progress& progress) {
         report(progress, 0.0);
-        for (std::uint32_t t = 0; t < mesh_.triangle_count(); ++t) {
+        for (std::uint32_t t = 0; t < mesh_.indices.size() / 3; ++t) {
             fill(t);
         }
         report(progress, 0.3);
@@ -54,15 +54,14 @@ class MapMaker {
 
     /// Where a half-edge begins in the texture [texels].
     [[nodiscard]] glm::dvec2 at(std::uint32_t half_edge) const {
-        return static_cast<double>(map_.size) * glm::dvec2(mesh_.uvs[mesh_.indices[half_edge]]);
+        return glm::dvec2(map_.size) * glm::dvec2(mesh_.uvs[mesh_.indices[half_edge]]);
     }
     [[nodiscard]] double signed_area2(std::uint32_t t) const {
         return cross2(at(3 * t + 1) - at(3 * t), at(3 * t + 2) - at(3 * t));
     }
     [[nodiscard]] std::size_t texel_at(int x, int y) const {
-        const int n = map_.size;
-        const auto wrap = [n](int i) { return static_cast<std::size_t>((i % n + n) % n); };
-        return wrap(y) * static_cast<std::size_t>(n) + wrap(x);
+        const auto wrap = [](int i, int n) { return static_cast<std::size_t>((i % n + n) % n); };
+        return wrap(y, map_.size.y) * static_cast<std::size_t>(map_.size.x) + wrap(x, map_.size.x);
     }
 
     void fill(std::uint32_t t) {
@@ -72,7 +71,7 @@ class MapMaker {
         map_.faults.mirrored_triangles += area2 < 0.0 ? 1 : 0;
         constexpr int most_textures = 4;
         const bool seen =
-            for_each_texel(corner, most_textures * map_.size,
+            for_each_texel(corner, most_textures * std::max(map_.size.x, map_.size.y),
                            [&](int x, int y, double b1, double b2) { set(texel_at(x, y), t, b1, b2); });
         map_.faults.huge_triangles += seen ? 0 : 1;
     }
@@ -102,7 +101,7 @@ class MapMaker {
         std::uint32_t c = across;
         std::uint32_t d = MeshAdjacency::next(across);
         // Triangles of one orientation run along their common edge in opposite directions.
-        if (place_[mesh_.indices[a]] != place_[mesh_.indices[c]]) {
+        if (mesh_.place[mesh_.indices[a]] != mesh_.place[mesh_.indices[c]]) {
             std::swap(c, d);
         }
         const auto uv = [&](std::uint32_t h) { return mesh_.uvs[mesh_.indices[h]]; };
@@ -134,7 +133,7 @@ class MapMaker {
         const glm::dvec2 edge = b - a;
         const double length2 = glm::dot(edge, edge);
         // A triangle that fill() left out has no gutter either.
-        if (!(length2 > 0.0) || std::sqrt(length2) > 6.0 * map_.size) {
+        if (!(length2 > 0.0) || std::sqrt(length2) > 6.0 * std::max(map_.size.x, map_.size.y)) {
             return;
         }
         const double turn = signed_area2(half_edge / 3) > 0.0 ? 1.0 : -1.0;
@@ -145,11 +144,11 @@ class MapMaker {
         const auto first = [&](double x) {
             return static_cast<int>(std::ceil(repeats ? x : std::max(x, 0.0)));
         };
-        const auto last = [&](double x) {
-            return static_cast<int>(std::floor(repeats ? x : std::min<double>(x, map_.size))) - 1;
+        const auto last = [&](double x, int n) {
+            return static_cast<int>(std::floor(repeats ? x : std::min<double>(x, n))) - 1;
         };
-        for (int y = first(low.y); y <= last(high.y); ++y) {
-            for (int x = first(low.x); x <= last(high.x); ++x) {
+        for (int y = first(low.y); y <= last(high.y, map_.size.y); ++y) {
+            for (int x = first(low.x); x <= last(high.x, map_.size.x); ++x) {
                 const std::size_t index = texel_at(x, y);
                 if (map_.texels[index].owner != 0.0F) {
                     continue;
@@ -211,8 +210,7 @@ class MapMaker {
         return {owner, static_cast<float>(weight[1]), static_cast<float>(weight[2]), owner};
     }
 
-    const MeshData& mesh_;
-    std::span<const std::uint32_t> place_;
+    const TexelSurface& mesh_;
     MeshAdjacency adjacency_;
     std::vector<Gutter> gutters_;
     TexelMap map_;
@@ -220,9 +218,8 @@ class MapMaker {
 
 }  // namespace
 
-TexelMap make_texel_map(const MeshData& mesh, std::span<const std::uint32_t> place, int size,
-                        const Progress& progress) {
-    return MapMaker(mesh, place, size).make(progress);
+TexelMap make_texel_map(const TexelSurface& surface, const glm::ivec2& size, const Progress& progress) {
+    return MapMaker(surface, size).make(progress);
 }
 
 }  // namespace viscera::tissue

@@ -6,7 +6,6 @@
 
 #include <glm/glm.hpp>
 
-#include "engine/core/mesh_data.h"
 #include "engine/core/progress.h"
 
 namespace viscera::tissue {
@@ -35,15 +34,23 @@ struct TexelMapFaults {
 };
 
 struct TexelMap {
-    int size = 0;                    ///< texels along each side
-    std::vector<TexelPoint> texels;  ///< size * size, the bottom row first
+    glm::ivec2 size{0};              ///< [texels]
+    std::vector<TexelPoint> texels;  ///< size.x * size.y, the bottom row first
     TexelMapFaults faults;
 };
 
+/// What a map is made of. All of it stays as it is while a host moves the surface.
+struct TexelSurface {
+    std::span<const glm::vec3> positions;  ///< in any unit: gutters go by this shape
+    std::span<const glm::vec2> uvs;
+    std::span<const std::uint32_t> indices;
+    std::span<const std::uint32_t> place;  ///< per vertex the vertex that stands for its place
+};
+
 /// Every texel whose centre lies in a triangle, and gutter_texels around each chart, unless they lie in
-/// another one. Texture coordinates beyond [0, 1] repeat. `place`: per vertex the vertex that stands for its
-/// place. Triangle numbers must be below 2^24. Throws Error(usage) when cancelled.
-[[nodiscard]] TexelMap make_texel_map(const MeshData& mesh, std::span<const std::uint32_t> place, int size,
+/// another one. Texture coordinates beyond [0, 1] repeat. Triangle numbers must be below 2^24. Throws
+/// Error(usage) when cancelled.
+[[nodiscard]] TexelMap make_texel_map(const TexelSurface& surface, const glm::ivec2& size,
                                       const Progress& progress = {});
 
 }  // namespace viscera::tissue

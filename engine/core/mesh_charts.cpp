@@ -36,9 +36,9 @@ class Cutter {
   public:
     Cutter(std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices,
            std::span<const std::uint32_t> place, const MeshAdjacency& adjacency)
-        : positions_(positions), indices_(indices), across_(adjacency.across) {
-        leave_folds(place);
-        measure(place);
+        : positions_(positions), indices_(indices), place_(place), across_(adjacency.across) {
+        leave_folds();
+        measure();
     }
 
     MeshCharts cut() {
@@ -58,15 +58,15 @@ class Cutter {
 
     /// Triangles that run along their common edge in one direction are wound against each other, and would
     /// lie on each other in a chart that both face.
-    void leave_folds(std::span<const std::uint32_t> place) {
+    void leave_folds() {
         for (std::uint32_t h = 0; h < across_.size(); ++h) {
-            if (across_[h] != none && place[indices_[h]] == place[indices_[across_[h]]]) {
+            if (across_[h] != none && place_[indices_[h]] == place_[indices_[across_[h]]]) {
                 across_[h] = none;
             }
         }
     }
 
-    void measure(std::span<const std::uint32_t> place) {
+    void measure() {
         std::vector<glm::dvec3> at_place(positions_.size(), glm::dvec3(0.0));
         for (std::size_t t = 0; t < count(); ++t) {
             const glm::dvec3 normal = glm::cross(corner(t, 1) - corner(t, 0), corner(t, 2) - corner(t, 0));
@@ -74,14 +74,14 @@ class Cutter {
             normal_.push_back(unit_or(normal, glm::dvec3(0.0)));
             centre_.push_back((corner(t, 0) + corner(t, 1) + corner(t, 2)) / 3.0);
             for (std::size_t k = 0; k < 3; ++k) {
-                at_place[place[indices_[3 * t + k]]] += normal;
+                at_place[place_[indices_[3 * t + k]]] += normal;
             }
         }
         // Smoothed over the neighbours, so that a rough surface is not cut into its single triangles.
         for (std::size_t t = 0; t < count(); ++t) {
             glm::dvec3 sum = normal_[t];
             for (std::size_t k = 0; k < 3; ++k) {
-                sum += unit_or(at_place[place[indices_[3 * t + k]]], glm::dvec3(0.0));
+                sum += unit_or(at_place[place_[indices_[3 * t + k]]], glm::dvec3(0.0));
             }
             smooth_.push_back(unit_or(sum, normal_[t]));
         }
@@ -324,16 +324,50 @@ class Cutter {
         charts_.axis[into] = axis;
     }
 
-    /// Whether a chart covers itself when laid on its plane, seen on a grid.
+    /// An edge of a chart's border on the chart's plane, ends by place.
+    struct BorderEdge {
+        std::uint32_t from = 0;
+        std::uint32_t to = 0;
+        glm::dvec2 a{0.0};
+        glm::dvec2 b{0.0};
+    };
+
+    [[nodiscard]] std::vector<BorderEdge> border_of(std::span<const std::uint32_t> members,
+                                                    const glm::dvec3& axis) const {
+        const auto [u, v] = plane_of(axis);
+        std::vector<BorderEdge> border;
+        for (const std::uint32_t t : members) {
+            for (std::uint32_t k = 0; k < 3; ++k) {
+                const std::uint32_t across = across_[3 * t + k];
+                if (across != none && charts_.chart_of[across / 3] == charts_.chart_of[t]) {
+                    continue;
+                }
+                const std::uint32_t next = (k + 1) % 3;
+                border.push_back({place_[indices_[3 * t + k]],
+                                  place_[indices_[3 * t + next]],
+                                  {glm::dot(corner(t, k), u), glm::dot(corner(t, k), v)},
+                                  {glm::dot(corner(t, next), u), glm::dot(corner(t, next), v)}});
+            }
+        }
+        return border;
+    }
+
+    /// Whether a chart covers itself when laid on its plane. All its triangles face the axis, so neighbours
+    /// do not cover each other, and its border crosses itself, or winds about a vertex more than once around,
+    /// which a grid shows.
     [[nodiscard]] bool overlaps(std::span<const std::uint32_t> members, const glm::dvec3& axis) const {
+        return border_crosses(members, axis) || covers_twice(members, axis);
+    }
+
+    [[nodiscard]] bool covers_twice(std::span<const std::uint32_t> members, const glm::dvec3& axis) const {
         constexpr int side = 256;
         constexpr double inside = 1e-3;
         const auto [u, v] = plane_of(axis);
-        glm::dvec2 low(std::numeric_limits<double>::max());
-        glm::dvec2 high(std::numeric_limits<double>::lowest());
         const auto flat = [&, &u = u, &v = v](std::uint32_t t, std::size_t k) {
             return glm::dvec2(glm::dot(corner(t, k), u), glm::dot(corner(t, k), v));
         };
+        glm::dvec2 low(std::numeric_limits<double>::max());
+        glm::dvec2 high(std::numeric_limits<double>::lowest());
         for (const std::uint32_t t : members) {
             for (std::size_t k = 0; k < 3; ++k) {
                 low = glm::min(low, flat(t, k));
@@ -356,6 +390,31 @@ class Cutter {
             });
         }
         return found;
+    }
+
+    [[nodiscard]] bool border_crosses(std::span<const std::uint32_t> members, const glm::dvec3& axis) const {
+        std::vector<BorderEdge> border = border_of(members, axis);
+        const auto left = [](const BorderEdge& edge) { return std::min(edge.a.x, edge.b.x); };
+        const auto right = [](const BorderEdge& edge) { return std::max(edge.a.x, edge.b.x); };
+        std::ranges::sort(border, {}, left);
+        for (std::size_t i = 0; i < border.size(); ++i) {
+            for (std::size_t j = i + 1; j < border.size() && left(border[j]) <= right(border[i]); ++j) {
+                if (cross(border[i], border[j])) {
+                    return true;
+                }
+            }
+        }
+        return false;
+    }
+
+    [[nodiscard]] static bool cross(const BorderEdge& one, const BorderEdge& other) {
+        if (one.from == other.from || one.from == other.to || one.to == other.from || one.to == other.to) {
+            return false;
+        }
+        const auto side = [](const BorderEdge& edge, const glm::dvec2& p) {
+            return cross2(edge.b - edge.a, p - edge.a);
+        };
+        return side(one, other.a) * side(one, other.b) < 0.0 && side(other, one.a) * side(other, one.b) < 0.0;
     }
 
     /// Charts that cover themselves are cut in the middle of their longer side.
@@ -408,6 +467,7 @@ class Cutter {
 
     std::span<const glm::vec3> positions_;
     std::span<const std::uint32_t> indices_;
+    std::span<const std::uint32_t> place_;
     std::vector<std::uint32_t> across_;
     std::vector<double> area_;
     std::vector<glm::dvec3> normal_;

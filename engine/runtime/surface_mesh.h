@@ -57,6 +57,10 @@ class SurfaceMesh {
     [[nodiscard]] std::uint64_t shape_key() const { return shape_key_; }
     /// With the present positions and normals; uvs always there.
     [[nodiscard]] const MeshData& data() const { return data_; }
+    /// As the file has them, wherever a host has moved them.
+    [[nodiscard]] std::span<const glm::vec3> file_positions() const {
+        return file_positions_.empty() ? data_.positions : file_positions_;
+    }
     /// The file's own texture coordinates, which its pictures are made for; data().uvs where it has none.
     [[nodiscard]] std::span<const glm::vec2> picture_uvs() const { return picture_uvs_; }
     /// Per vertex the first one at the same place in the file: seams closed.

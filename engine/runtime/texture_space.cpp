@@ -1,12 +1,16 @@
 #include "engine/runtime/texture_space.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 
+#include "engine/core/hash.h"
 #include "engine/core/log.h"
 #include "engine/core/mesh_atlas.h"
 #include "engine/io/mesh.h"
+#include "engine/io/packed.h"
 #include "engine/runtime/assets.h"
 
 namespace viscera {
@@ -86,10 +90,44 @@ void use_atlas(TextureSpace& space, const MeshAtlas& atlas) {
     space.origin = atlas.origin;
 }
 
+/// Named in the disk cache; another number when atlases are made in another way.
+constexpr std::string_view cached_kind = "mesh-atlas-1";
+
+std::optional<MeshAtlas> kept_atlas(const io::DiskCache& cache, std::uint64_t key, const MeshData& mesh) {
+    const auto bytes = cache.load(cached_kind, key);
+    if (!bytes) {
+        return std::nullopt;
+    }
+    MeshAtlas atlas;
+    io::Unpacker unpacker(*bytes);
+    unpacker.read(atlas.indices).read(atlas.origin).read(atlas.uvs).read(atlas.charts).read(atlas.scale);
+    unpacker.read(atlas.coverage).read(atlas.mean_stretch).read(atlas.most_stretch);
+    const std::size_t vertices = mesh.positions.size() + atlas.origin.size();
+    const auto below = [](const std::vector<std::uint32_t>& values, std::size_t limit) {
+        return std::ranges::all_of(values, [limit](std::uint32_t value) { return value < limit; });
+    };
+    const bool fits = unpacker.complete() && atlas.indices.size() == mesh.indices.size() &&
+                      atlas.uvs.size() == vertices && below(atlas.indices, vertices) &&
+                      below(atlas.origin, mesh.positions.size());
+    return fits ? std::optional(std::move(atlas)) : std::nullopt;
+}
+
 MeshAtlas atlas_of(const MeshData& mesh, const std::string& where, Assets& assets) {
+    const std::uint64_t key = Hash()
+                                  .bytes(std::as_bytes(std::span(mesh.positions)))
+                                  .bytes(std::as_bytes(std::span(mesh.indices)))
+                                  .value();
+    if (auto kept = kept_atlas(assets.disk_cache(), key, mesh)) {
+        return std::move(*kept);
+    }
     const std::vector<std::uint32_t> place = io::first_at_same_place(mesh.positions);
-    return make_atlas(mesh.positions, mesh.indices, place,
-                      assets.progress("making a texture atlas for " + where));
+    MeshAtlas atlas = make_atlas(mesh.positions, mesh.indices, place,
+                                 assets.progress("making a texture atlas for " + where));
+    io::Packer packer;
+    packer.add(atlas.indices).add(atlas.origin).add(atlas.uvs).add(atlas.charts).add(atlas.scale);
+    packer.add(atlas.coverage).add(atlas.mean_stretch).add(atlas.most_stretch);
+    assets.disk_cache().store(cached_kind, key, packer.bytes());
+    return atlas;
 }
 
 std::string describe(const MeshAtlas& atlas) {
