@@ -14,6 +14,8 @@
 #include "effects/tissue/bake_effect.h"
 #include "effects/tissue/bipolar_effect.h"
 #include "effects/tissue/coagulate_effect.h"
+#include "effects/tissue/blood_effect.h"
+#include "effects/tissue/gravity_effect.h"
 #include "effects/volume/limits_effect.h"
 #include "effects/volume/ray_cast_effect.h"
 #include "effects/volume/slice_effect.h"
@@ -65,6 +67,10 @@ void register_all(Registry& registry) {
                  [] { return std::make_unique<organ::SurfaceEffect>(); });
     registry.add("organ.depth_of_field", "Blurs a picture by the blurriness that organs leave in its alpha.",
                  [] { return std::make_unique<organ::DepthOfFieldEffect>(); });
+    registry.add("tissue.gravity", "Which way things run down a surface, and what drives a film over it.",
+                 [] { return std::make_unique<tissue::GravityEffect>(); });
+    registry.add("tissue.blood", "Blood that runs down a surface as drops and as a film.",
+                 [] { return std::make_unique<tissue::BloodEffect>(); });
     registry.add("filter.gaussian", "One direction of a Gaussian blur.",
                  [] { return std::make_unique<filter::GaussianEffect>(); });
     registry.add("picture.image", "A picture file as a target.",

@@ -1,0 +1,317 @@
+#include "effects/tissue/blood_effect.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "effects/tissue/surface_search.h"
+#include "engine/core/error.h"
+#include "engine/core/hash.h"
+#include "engine/core/log.h"
+#include "engine/runtime/pass.h"
+
+namespace viscera::tissue {
+namespace {
+
+// Steps between two looks at which tiles are at rest: in as many steps nothing leaves a tile's neighbours.
+constexpr std::int64_t steps_per_look = 8;
+// A gap between frames of more than this is not made up for.
+constexpr double longest_gap_s = 0.5;
+constexpr double smallest_drop_share = 0.02;
+constexpr double latest_s = 1.0e9;
+
+std::int64_t step_at(double time_s, double steps_per_s) {
+    // A frame's time that should lie on the grid may miss it by its own rounding.
+    const double clamped = std::isfinite(time_s) ? std::clamp(time_s, -latest_s, latest_s) : 0.0;
+    return static_cast<std::int64_t>(std::floor(clamped * steps_per_s + 1e-6 * (1.0 + std::abs(clamped))));
+}
+
+/// A name that a port reads, with a default target of the same name.
+Port read(const char* name, const char* target, const char* doc, bool optional = false) {
+    return {.name = name, .access = Access::read, .target = target, .doc = doc, .optional = optional};
+}
+
+}  // namespace
+
+BloodEffect::BloodEffect() : programs_(BloodGpu::programs()) {
+    programs_.push_back({"tissue/blood_tile.vert", "tissue/blood_look.frag", {"VISIBLE"}});
+    programs_.push_back({"tissue/blood_tile.vert", "tissue/blood_look.frag", {"VISIBLE", "CAPS"}});
+}
+
+BloodEffect::~BloodEffect() = default;
+
+void BloodEffect::validate() const {
+    if (params_.wounds.size() > most_wounds) {
+        throw Error(ErrorCode::scene, "/wounds", "has more than 64 wounds");
+    }
+    if (params_.tools.size() > most_tools) {
+        throw Error(ErrorCode::scene, "/tools", "has more than 16 tools");
+    }
+}
+
+std::vector<Port> BloodEffect::ports() const {
+    const SizeRule size{.width = params_.size, .height = params_.size};
+    return {read("position", "tissue.position", "Of the bake."),
+            read("normal", "tissue.normal", "Of the bake."),
+            read("metric", "tissue.metric", "Of the bake."),
+            read("seam", "tissue.seam", "Of the bake."),
+            read("gravity", "tissue.gravity", "Of tissue.gravity."),
+            read("flow_right", "tissue.flow_right", "Of tissue.gravity."),
+            read("flow_top", "tissue.flow_top", "Of tissue.gravity."),
+            read("energy", "tissue.energy", "Where tissue is coagulated, wounds do not bleed.", true),
+            {.name = "height",
+             .access = Access::write,
+             .target = "tissue.blood_height",
+             .doc = "Thickness of the blood [mm].",
+             .format = PixelFormat::r16f,
+             .size = size},
+            {.name = "colour",
+             .access = Access::write,
+             .target = "tissue.blood_color",
+             .doc = "What the tissue's colour is multiplied by; alpha: how much blood covers it.",
+             .format = PixelFormat::rgba16f,
+             .size = size,
+             .clear = {1.0F, 1.0F, 1.0F, 0.0F},
+             .optional = true},
+            {.name = "normal_map",
+             .access = Access::write,
+             .target = "tissue.blood_normal",
+             .doc = "Normal of the blood's surface: -x/z and -y/z are its slopes [mm/mm] along u and v.",
+             .format = PixelFormat::rgba16f,
+             .size = size,
+             .clear = {0.0F, 0.0F, 1.0F, 0.0F},
+             .optional = true}};
+}
+
+void BloodEffect::check_sizes(const Prepare& prepare) const {
+    for (const char* port : {"position", "gravity"}) {
+        if (prepare.size(port) != prepare.size("height")) {
+            throw Error(ErrorCode::scene, "/size",
+                        "differs from the size of '" + std::string(port) + "', which the pass reads");
+        }
+    }
+}
+
+Work BloodEffect::prepare(Prepare& prepare) {
+    if (!prepare.has("position") || !prepare.has("gravity") || !prepare.has("flow_right")) {
+        return Work::idle("there is no surface");
+    }
+    if (!state_ || parameters_key_ != prepare.parameters_key()) {
+        check_sizes(prepare);
+        parameters_key_ = prepare.parameters_key();
+        mesh_ = SurfaceMesh::load(prepare.assets(), params_.mesh);
+        to_world_ = placement_matrix(params_.mesh.placement, mesh_->centre());
+        const std::uint64_t key = Hash()
+                                      .add(params_.state)
+                                      .add(params_.size)
+                                      .add(params_.liquid.max_drops)
+                                      .add(mesh_->key())
+                                      .value();
+        state_ = prepare.assets().shared<BloodState>(key, [] { return std::make_shared<BloodState>(); });
+    }
+    const Frame& frame = prepare.frame();
+    mesh_->move(frame.values, params_.mesh.host_positions, prepare.log());
+    gravity_ = gravity_of(params_.gravity, frame.values, prepare.log());
+    surface_key_ = Hash()
+                       .add(mesh_->shape_key())
+                       .add(to_world_)
+                       .add(gravity_.down)
+                       .add(gravity_.strength)
+                       .add(params_.open_edges)
+                       .value();
+    collect_wounds(params_, frame.values, prepare.log(), wounds_);
+    collect_tools(params_, frame.values, prepare.log(), tools_);
+
+    BloodState& state = *state_;
+    const double rate = params_.liquid.steps_per_s;
+    target_step_ = step_at(frame.time_s, rate);
+    if (!state.begun || target_step_ < state.step || state.steps_per_s != rate) {
+        state.begin_anew(target_step_, rate, params_.liquid.drop_life_s);
+    }
+    const auto gap = std::max(static_cast<std::int64_t>(longest_gap_s * rate), std::int64_t{1});
+    const bool runs = bleeds(std::max(state.step, target_step_ - gap), target_step_);
+    if (!state.bled && !runs) {
+        state.step = target_step_;
+        return Work::idle("there is no blood");
+    }
+    const bool disturbed = state.moving || runs || working_tools(target_step_) > 0 || state.tool_count > 0 ||
+                           surface_key_ != state.surface_key;
+    if (!disturbed) {
+        state.step = target_step_;
+    }
+    const bool steps = target_step_ > state.step;
+    return Work::all(
+        Hash().add(parameters_key_).add(state.version + (steps ? 1 : 0)).add(surface_key_).value());
+}
+
+bool BloodEffect::bleeds(std::int64_t first, std::int64_t last) const {
+    const double from = static_cast<double>(first) / params_.liquid.steps_per_s;
+    const double to = static_cast<double>(last) / params_.liquid.steps_per_s;
+    return last > first && std::ranges::any_of(wounds_, [&](const WoundParams& wound) {
+               return wound.rate_mm3_s > 0.0 && wound.start_s < to && wound.stop_s > from;
+           });
+}
+
+std::size_t BloodEffect::working_tools(std::int64_t step) const {
+    const double time = (static_cast<double>(step) + 0.5) / params_.liquid.steps_per_s;
+    return static_cast<std::size_t>(std::ranges::count_if(tools_, [&](const ToolParams& tool) {
+        return tool.rate > 0.0 && time >= tool.start_s && time < tool.stop_s;
+    }));
+}
+
+void BloodEffect::find_places() {
+    places_.resize(wounds_.size());
+    for (std::size_t i = 0; i < wounds_.size(); ++i) {
+        Place& place = places_[i];
+        if (place.position_mm == wounds_[i].position_mm && place.surface_key == surface_key_) {
+            continue;
+        }
+        place = {.position_mm = wounds_[i].position_mm, .surface_key = surface_key_};
+        if (const auto nearest = nearest_point(mesh_->data(), to_world_, wounds_[i].position_mm)) {
+            place.found = true;
+            place.uv = glm::vec2(nearest->uv - glm::floor(nearest->uv));
+        }
+    }
+}
+
+void BloodEffect::set_medium() {
+    const LiquidParams& liquid = params_.liquid;
+    const double drop = liquid.drop_mm3;
+    medium_.flow = glm::vec4(liquid.mobility_per_mm_s(), liquid.residual_mm, 1.0 / liquid.steps_per_s,
+                             liquid.drying_mm_s);
+    medium_.drop =
+        glm::vec4(liquid.drop_aspect, liquid.trail_mm, liquid.drop_life_s, smallest_drop_share * drop);
+    medium_.down = glm::vec3(gravity_.down);
+    medium_.strength = static_cast<float>(gravity_.strength);
+    medium_.open_edges = params_.open_edges;
+    medium_.sealed_energy = static_cast<float>(params_.sealed_energy);
+}
+
+void BloodEffect::set_tools(std::int64_t step) {
+    medium_.tools.clear();
+    medium_.tool_powers.clear();
+    const double time = (static_cast<double>(step) + 0.5) / params_.liquid.steps_per_s;
+    for (const ToolParams& tool : tools_) {
+        if (tool.rate > 0.0 && time >= tool.start_s && time < tool.stop_s) {
+            medium_.tools.emplace_back(glm::vec3(tool.position_mm), static_cast<float>(tool.radius_mm));
+            medium_.tool_powers.push_back(tool_power(tool, 1.0 / params_.liquid.steps_per_s));
+        }
+    }
+}
+
+void BloodEffect::update_surface(const Pass& pass) {
+    BloodState& state = *state_;
+    if (state.surface_key == surface_key_) {
+        return;
+    }
+    const bool empty = state.surface_key == 0;
+    state.surface_key = surface_key_;
+    if (state.seam_key != mesh_->key()) {
+        state.seam_key = mesh_->key();
+        state.gpu->find_seams(pass);
+    }
+    state.gpu->take_surface(pass, medium_, empty);
+    if (!empty) {
+        state.moving = true;
+        state.gpu->look_at_tiles(pass, medium_, state.ring.alive(), true);
+        state.disturbed_at = ++state.looks;
+    }
+}
+
+void BloodEffect::collect_drops(std::int64_t step) {
+    spawns_.clear();
+    const double dt = 1.0 / params_.liquid.steps_per_s;
+    const double time = (static_cast<double>(step) + 0.5) * dt;
+    for (std::size_t i = 0; i < wounds_.size(); ++i) {
+        const WoundParams& wound = wounds_[i];
+        if (!places_[i].found || time < wound.start_s || time >= wound.stop_s) {
+            continue;
+        }
+        const auto drops =
+            state_->meters[i].flow(wound.rate_mm3_s * pulse_of(wound, time) * dt, params_.liquid.drop_mm3);
+        for (int n = 0; n < drops.count; ++n) {
+            spawns_.push_back({.uv = places_[i].uv,
+                               .volume_mm3 = static_cast<float>(drops.volume_mm3),
+                               .radius_mm = static_cast<float>(wound.radius_mm),
+                               .seed = static_cast<float>(state_->seed++ & 0xffffffU),
+                               .source = static_cast<float>(i)});
+        }
+    }
+}
+
+void BloodEffect::run_step(const Pass& pass) {
+    BloodState& state = *state_;
+    const std::int64_t step = state.step;
+    set_tools(step);
+    collect_drops(step);
+    state.ring.pass_to(step);
+    if (step % steps_per_look == 0 || medium_.tools.size() != state.tool_count) {
+        state.gpu->look_at_tiles(pass, medium_, state.ring.alive(), !medium_.tools.empty());
+        ++state.looks;
+    }
+    if (!medium_.tools.empty() || state.tool_count != 0) {
+        state.moving = true;
+        state.disturbed_at = state.looks + 1;
+    }
+    state.tool_count = medium_.tools.size();
+    if (!spawns_.empty()) {
+        const std::int64_t capacity = state.gpu->capacity();
+        const std::int64_t head = state.ring.head();
+        const DropRange evicted = state.ring.add(static_cast<std::int64_t>(spawns_.size()), capacity);
+        for (std::size_t i = 0; i < spawns_.size(); ++i) {
+            spawns_[i].slot = static_cast<float>((head + static_cast<std::int64_t>(i)) % capacity);
+        }
+        state.gpu->spawn(pass, medium_, spawns_, evicted);
+        state.bled = state.moving = true;
+        state.disturbed_at = state.looks + 1;
+    }
+    state.gpu->step(pass, medium_, state.ring.alive(), step);
+    ++state.step;
+}
+
+void BloodEffect::draw(const Pass& pass) {
+    BloodState& state = *state_;
+    GLint target = 0;  // of this pass; the steps below draw elsewhere
+    pass.gl().GetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &target);
+    if (!state.gpu) {
+        state.gpu = std::make_unique<BloodGpu>(pass.gl(), params_.size, params_.liquid.max_drops);
+        state.surface_key = state.seam_key = 0;
+    }
+    set_medium();
+    set_tools(state.step);
+    update_surface(pass);
+    if (target_step_ > state.step) {
+        find_places();
+        const auto gap =
+            std::max(static_cast<std::int64_t>(longest_gap_s * state.steps_per_s), std::int64_t{1});
+        state.step = std::max(state.step, target_step_ - gap);
+        while (state.step < target_step_) {
+            run_step(pass);
+        }
+        ++state.version;
+        if (const auto still = state.gpu->all_still(); still && *still >= state.disturbed_at) {
+            state.moving = false;
+            state.ring.forget();
+        }
+        // Only where nothing bleeds: what comes back is a picture in memory.
+        if (state.moving && !bleeds(target_step_ - 1, target_step_) && state.looks >= state.disturbed_at) {
+            state.gpu->ask_tiles(state.looks);
+        }
+    }
+    const bool caps = state.gpu->draw_caps(pass, medium_, state.ring.alive());
+    pass.gl().BindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(target));
+    pass.raster(gl::overwrite_state);
+    const gl::Program& program = pass.use(programs_.size() - (caps ? 1 : 2));
+    pass.bind(program, "u_film", state.gpu->film(), gl::Filter::nearest);
+    pass.bind(program, "u_metric", "metric");
+    if (caps) {
+        pass.bind(program, "u_caps", state.gpu->caps(), gl::Filter::nearest);
+    }
+    program.set("u_extinction", glm::vec3(params_.look.extinction_per_mm));
+    program.set("u_deep", glm::vec3(params_.look.deep_colour));
+    program.set("u_covering", static_cast<float>(params_.look.covering_mm));
+    program.set("u_bump", static_cast<float>(params_.look.bump));
+    state.gpu->cover_visible(pass, program);
+}
+
+}  // namespace viscera::tissue

@@ -1,0 +1,423 @@
+#include "effects/tissue/blood_gpu.h"
+
+#include <algorithm>
+
+#include "engine/runtime/pass.h"
+
+namespace viscera::tissue {
+namespace {
+
+/// Index into programs().
+enum class Shader : std::size_t {
+    start,
+    link,
+    film,
+    film_tools,
+    move,
+    move_tools,
+    deposited,
+    flow_links,
+    spawned,
+    spawned_energy,
+    counted,
+    counted_energy,
+    scan,
+    mark_of_drops,
+    mark_of_seams,
+    settle,
+    cap,
+};
+
+constexpr int tile_side = 32;
+constexpr int ring_width = 256;
+constexpr int link_width = 512;
+constexpr int spawn_width = 128;  // two texels for each drop
+constexpr int spawn_rows = 16;
+constexpr int deposit_points = 4;
+constexpr int sources = 64;
+// A film that changes by less per step stands [mm].
+constexpr float still_mm = 1e-6F;
+
+std::array<gl::Texture, 2> pair_of(const gl::Functions& gl, int width, int height, PixelFormat format,
+                                   const char* label) {
+    return {gl::Texture::make_2d(gl, width, height, format, label),
+            gl::Texture::make_2d(gl, width, height, format, label)};
+}
+
+std::array<gl::Framebuffer, 2> targets_of(const gl::Functions& gl, const std::array<gl::Texture, 2>& textures,
+                                          const char* label) {
+    return {gl::Framebuffer(gl, textures[0], label), gl::Framebuffer(gl, textures[1], label)};
+}
+
+gl::Framebuffer with_deposit(const gl::Functions& gl, const gl::Texture& drops, const gl::Texture& deposit) {
+    const std::array<const gl::Texture*, 2> colours{&drops, &deposit};
+    return {gl, colours, nullptr, "drops of blood"};
+}
+
+const gl::Program& use(const Pass& pass, Shader shader) {
+    return pass.use(static_cast<std::size_t>(shader));
+}
+
+void draw_into(const Pass& pass, const gl::Framebuffer& target, const gl::RasterState& state) {
+    target.bind();
+    gl::apply(pass.gl(), state, {0, 0, target.width(), target.height()});
+}
+
+void clear(const Pass& pass, const gl::Framebuffer& target) {
+    draw_into(pass, target, gl::overwrite_state);
+    target.clear_colour(0, {0.0F, 0.0F, 0.0F, 0.0F});
+}
+
+void bind(const Pass& pass, const gl::Program& program, std::string_view uniform,
+          const gl::Texture& texture) {
+    pass.bind(program, uniform, texture, gl::Filter::nearest);
+}
+
+}  // namespace
+
+std::vector<ProgramDesc> BloodGpu::programs() {
+    const char* whole = "common/fullscreen.vert";
+    const char* tile = "tissue/blood_tile.vert";
+    return {{whole, "tissue/blood_start.frag", {}},
+            {whole, "tissue/blood_link.frag", {}},
+            {tile, "tissue/blood_film.frag", {}},
+            {tile, "tissue/blood_film.frag", {"TOOLS"}},
+            {whole, "tissue/blood_move.frag", {}},
+            {whole, "tissue/blood_move.frag", {"TOOLS"}},
+            {"tissue/blood_deposit.vert", "tissue/blood_add.frag", {}},
+            {"tissue/blood_link.vert", "tissue/blood_add.frag", {}},
+            {"tissue/blood_spawn.vert", "tissue/blood_spawn.frag", {}},
+            {"tissue/blood_spawn.vert", "tissue/blood_spawn.frag", {"ENERGY"}},
+            {"tissue/blood_spawn.vert", "tissue/blood_spawn.frag", {"LEDGER"}},
+            {"tissue/blood_spawn.vert", "tissue/blood_spawn.frag", {"LEDGER", "ENERGY"}},
+            {whole, "tissue/blood_scan.frag", {}},
+            {"tissue/blood_mark.vert", "tissue/blood_mark.frag", {}},
+            {"tissue/blood_mark.vert", "tissue/blood_mark.frag", {"SEAMS"}},
+            {tile, "tissue/blood_copy.frag", {"SETTLED"}},
+            {"tissue/blood_cap.vert", "tissue/blood_cap.frag", {}}};
+}
+
+BloodGpu::BloodGpu(const gl::Functions& gl, int size, int max_drops)
+    : gl_(&gl),
+      size_(size),
+      tiles_((size + tile_side - 1) / tile_side),
+      film_(pair_of(gl, size, size, PixelFormat::rgba32f, "film of blood")),
+      drops_(pair_of(gl, ring_width, (max_drops + ring_width - 1) / ring_width, PixelFormat::rgba32f,
+                     "drops of blood")),
+      deposit_(gl::Texture::make_2d(gl, drops_[0].width(), drops_[0].height(), PixelFormat::rgba32f,
+                                    "what drops leave behind")),
+      marks_(pair_of(gl, tiles_, tiles_, PixelFormat::rg8, "tiles of blood")),
+      across_(pair_of(gl, tiles_, tiles_, PixelFormat::r8, "tiles of blood across seams")),
+      spawn_(gl::Texture::make_2d(gl, spawn_width, spawn_rows, PixelFormat::rgba32f, "new drops of blood")),
+      ledger_(gl::Texture::make_2d(gl, sources, 1, PixelFormat::r32f, "blood by source")),
+      film_target_(targets_of(gl, film_, "film of blood")),
+      drops_target_{with_deposit(gl, drops_[0], deposit_), with_deposit(gl, drops_[1], deposit_)},
+      drops_alone_(targets_of(gl, drops_, "drops of blood")),
+      marks_target_(targets_of(gl, marks_, "tiles of blood")),
+      across_target_(targets_of(gl, across_, "tiles of blood across seams")),
+      ledger_target_(gl, ledger_, "blood by source"),
+      spawn_rows_(static_cast<std::size_t>(spawn_width / 2 * spawn_rows)),
+      tile_answers_(gl) {}
+
+std::int64_t BloodGpu::capacity() const {
+    return static_cast<std::int64_t>(ring_width) * drops_[0].height();
+}
+
+void BloodGpu::bind_place(const Pass& pass, const gl::Program& program) const {
+    bind(pass, program, "u_film", film());
+    pass.bind(program, "u_right", "flow_right");
+}
+
+void BloodGpu::set_medium(const gl::Program& program, const BloodMedium& medium) const {
+    program.set("u_flow", medium.flow);
+    program.set("u_drop", medium.drop);
+    program.set("u_down", medium.down);
+    program.set("u_strength", medium.strength);
+    program.set("u_open", medium.open_edges);
+}
+
+void BloodGpu::set_tools(const Pass& pass, const gl::Program& program, const BloodMedium& medium) const {
+    if (!medium.tools.empty()) {
+        pass.bind(program, "u_position", "position");
+        program.set("u_tool_count", static_cast<int>(medium.tools.size()));
+        program.set("u_tool", std::span<const glm::vec4>(medium.tools));
+        program.set("u_tool_power", std::span<const glm::vec2>(medium.tool_powers));
+    }
+}
+
+void BloodGpu::cover_tiles(const Pass& pass, const gl::Program& program) const {
+    bind(pass, program, "u_tiles", marks_[marks_now_]);
+    bind(pass, program, "u_across", across_[marks_now_]);
+    program.set("u_size", glm::vec2(static_cast<float>(size_)));
+    pass.draw_generated(GL_TRIANGLE_STRIP, 4, tiles_ * tiles_);
+}
+
+void BloodGpu::cover_visible(const Pass& pass, const gl::Program& program) const {
+    cover_tiles(pass, program);
+}
+
+void BloodGpu::take_surface(const Pass& pass, const BloodMedium& medium, bool empty) {
+    const gl::Program& program = use(pass, Shader::start);
+    pass.bind(program, "u_metric", "metric");
+    pass.bind(program, "u_position", "position");
+    pass.bind(program, "u_seam", "seam");
+    bind(pass, program, "u_film", film());
+    program.set("u_empty", empty);
+    draw_into(pass, film_target_[1 - film_now_], gl::overwrite_state);
+    pass.draw_fullscreen();
+    film_now_ = 1 - film_now_;
+    // Again into the other one, whose areas are now the new ones: nothing changes its volume twice.
+    bind(pass, program, "u_film", film());
+    draw_into(pass, film_target_[1 - film_now_], gl::overwrite_state);
+    pass.draw_fullscreen();
+    if (empty) {
+        for (std::size_t i = 0; i < 2; ++i) {
+            clear(pass, drops_alone_[i]);
+            clear(pass, marks_target_[i]);
+            clear(pass, across_target_[i]);
+        }
+        clear(pass, ledger_target_);
+    }
+    if (link_count_ > 0) {
+        const gl::Program& links = use(pass, Shader::link);
+        bind(pass, links, "u_links", *links_);
+        pass.bind(links, "u_position", "position");
+        pass.bind(links, "u_normal", "normal");
+        pass.bind(links, "u_metric", "metric");
+        bind(pass, links, "u_film", film());
+        pass.bind(links, "u_gravity", "gravity");
+        set_medium(links, medium);
+        draw_into(pass, *pulls_target_, gl::overwrite_state);
+        pass.draw_fullscreen();
+    }
+}
+
+void BloodGpu::find_seams(const Pass& pass) {
+    std::vector<SeamLink> links;
+    if (pass.has("seam")) {
+        links = seam_links(gl::read_texture(*gl_, *pass.texture("position")),
+                           gl::read_texture(*gl_, *pass.texture("seam")));
+    }
+    link_count_ = static_cast<int>(links.size());
+    const int rows = std::max((link_count_ + link_width - 1) / link_width, 1);
+    links.resize(static_cast<std::size_t>(rows * link_width));
+    pulls_target_.reset();
+    links_ = gl::Texture::make_2d(*gl_, link_width, rows, PixelFormat::rgba32f, "parts of seams");
+    links_->upload(std::as_bytes(std::span(links)));
+    pulls_ = gl::Texture::make_2d(*gl_, link_width, rows, PixelFormat::rgba32f, "fall across seams");
+    pulls_target_.emplace(*gl_, *pulls_, "fall across seams");
+}
+
+void BloodGpu::mark_drops(const Pass& pass, const DropRange& range) const {
+    const gl::Program& program = use(pass, Shader::mark_of_drops);
+    bind(pass, program, "u_drops", drops());
+    program.set("u_first", static_cast<int>(range.first % capacity()));
+    program.set("u_tile_count", glm::ivec2(tiles_));
+    program.set("u_film_size", glm::vec2(static_cast<float>(size_)));
+    draw_into(pass, marks_target_[marks_now_], gl::max_blend_state);
+    pass.draw_generated(GL_POINTS, static_cast<int>(range.count), 1);
+}
+
+void BloodGpu::mark_seams(const Pass& pass) const {
+    if (link_count_ == 0) {
+        return;
+    }
+    const gl::Program& program = use(pass, Shader::mark_of_seams);
+    bind(pass, program, "u_links", *links_);
+    bind(pass, program, "u_tiles", marks_[marks_now_]);
+    program.set("u_film_size", glm::ivec2(size_));
+    draw_into(pass, across_target_[marks_now_], gl::max_blend_state);
+    pass.draw_generated(GL_POINTS, link_count_, 1);
+}
+
+void BloodGpu::look_at_tiles(const Pass& pass, const BloodMedium& medium, const DropRange& alive, bool wake) {
+    const std::size_t before = marks_now_;
+    const gl::Program& program = use(pass, Shader::scan);
+    bind(pass, program, "u_tiles", marks_[before]);
+    bind(pass, program, "u_across", across_[before]);
+    bind(pass, program, "u_film", film());
+    bind(pass, program, "u_film_before", film_[1 - film_now_]);
+    program.set("u_still", still_mm);
+    program.set("u_all", wake || !medium.tools.empty() || medium.flow.w > 0.0F);
+    draw_into(pass, marks_target_[1 - before], gl::overwrite_state);
+    pass.draw_fullscreen();
+    marks_now_ = 1 - before;
+    clear(pass, across_target_[marks_now_]);
+    if (alive.count > 0) {
+        mark_drops(pass, alive);
+    }
+    mark_seams(pass);
+
+    // A tile that is no longer stepped must be the same in both textures, which take turns.
+    const gl::Program& copy = use(pass, Shader::settle);
+    bind(pass, copy, "u_tiles_before", marks_[before]);
+    bind(pass, copy, "u_across_before", across_[before]);
+    bind(pass, copy, "u_film", film());
+    draw_into(pass, film_target_[1 - film_now_], gl::overwrite_state);
+    cover_tiles(pass, copy);
+}
+
+void BloodGpu::deposit(const Pass& pass, const BloodMedium& medium, const DropRange& range,
+                       const gl::Texture& source, bool whole, std::int64_t step) const {
+    const gl::Program& program = use(pass, Shader::deposited);
+    bind_place(pass, program);
+    bind(pass, program, "u_deposit", source);
+    pass.bind(program, "u_metric", "metric");
+    set_medium(program, medium);
+    program.set("u_first", static_cast<int>(range.first % capacity()));
+    program.set("u_salt", static_cast<int>(step & 0xffffff));
+    program.set("u_whole", whole);
+    pass.draw_generated(GL_POINTS, static_cast<int>(range.count) * deposit_points, 1);
+}
+
+void BloodGpu::spawn(const Pass& pass, const BloodMedium& medium, std::span<const DropSpawn> spawns,
+                     const DropRange& evicted) {
+    const std::size_t batch = spawn_rows_.size();
+    if (evicted.count > 0) {
+        // Into the texture that is read next: what is added to it is owed to the film in the next step. The
+        // other one, which stands for the areas here, has the same.
+        const gl::Texture& areas = film_[1 - film_now_];
+        const gl::Program& program = use(pass, Shader::deposited);
+        pass.bind(program, "u_right", "flow_right");
+        bind(pass, program, "u_film", areas);
+        bind(pass, program, "u_deposit", drops());
+        pass.bind(program, "u_metric", "metric");
+        set_medium(program, medium);
+        program.set("u_first", static_cast<int>(evicted.first % capacity()));
+        program.set("u_salt", 0);
+        program.set("u_whole", true);
+        draw_into(pass, film_target_[film_now_], gl::add_blend_state);
+        pass.draw_generated(GL_POINTS, static_cast<int>(evicted.count) * deposit_points, 1);
+    }
+    for (std::size_t first = 0; first < spawns.size(); first += batch) {
+        const std::size_t count = std::min(batch, spawns.size() - first);
+        const int rows = static_cast<int>((2 * count + spawn_width - 1) / spawn_width);
+        std::ranges::copy(spawns.subspan(first, count), spawn_rows_.begin());
+        spawn_.upload_region(
+            {0, 0, 0}, {spawn_width, rows, 1},
+            std::as_bytes(std::span(spawn_rows_).first(static_cast<std::size_t>(rows) * spawn_width / 2)));
+        const bool energy = pass.has("energy");
+        for (const bool counts : {false, true}) {
+            const gl::Program& program =
+                use(pass, counts ? (energy ? Shader::counted_energy : Shader::counted)
+                                 : (energy ? Shader::spawned_energy : Shader::spawned));
+            bind_place(pass, program);
+            bind(pass, program, "u_spawn", spawn_);
+            pass.bind(program, "u_metric", "metric");
+            if (energy) {
+                pass.bind(program, "u_energy", "energy");
+                program.set("u_sealed", medium.sealed_energy);
+            }
+            program.set("u_ring",
+                        counts ? glm::ivec2(sources, 1) : glm::ivec2(drops_[0].width(), drops_[0].height()));
+            draw_into(pass, counts ? ledger_target_ : drops_alone_[drops_now_],
+                      counts ? gl::add_blend_state : gl::overwrite_state);
+            pass.draw_generated(GL_POINTS, static_cast<int>(count), 1);
+        }
+        mark_drops(pass, {static_cast<std::int64_t>(spawns[first].slot), static_cast<std::int64_t>(count)});
+    }
+    mark_seams(pass);
+}
+
+void BloodGpu::draw_rows(const Pass& pass, const DropRange& range) const {
+    const std::int64_t first_row = range.first % capacity() / ring_width;
+    const std::int64_t last_row = (range.first + range.count - 1) % capacity() / ring_width;
+    const std::int64_t rows = drops_[0].height();
+    const auto band = [&](std::int64_t from, std::int64_t to) {
+        gl::RasterState state = gl::overwrite_state;
+        state.scissor = gl::Rect{0, static_cast<int>(from), ring_width, static_cast<int>(to - from)};
+        gl::apply(pass.gl(), state, {0, 0, ring_width, static_cast<int>(rows)});
+        pass.draw_fullscreen();
+    };
+    if (range.count >= capacity() - ring_width) {
+        band(0, rows);
+    } else if (first_row <= last_row) {
+        band(first_row, last_row + 1);
+    } else {
+        band(first_row, rows);
+        band(0, last_row + 1);
+    }
+}
+
+void BloodGpu::step(const Pass& pass, const BloodMedium& medium, const DropRange& alive, std::int64_t step) {
+    const bool tools = !medium.tools.empty();
+    const std::size_t next = 1 - film_now_;
+    if (alive.count > 0) {
+        const gl::Program& program = use(pass, tools ? Shader::move_tools : Shader::move);
+        bind_place(pass, program);
+        bind(pass, program, "u_drops", drops());
+        pass.bind(program, "u_gravity", "gravity");
+        set_medium(program, medium);
+        set_tools(pass, program, medium);
+        drops_target_[1 - drops_now_].bind();
+        draw_rows(pass, alive);
+        drops_now_ = 1 - drops_now_;
+    }
+    const gl::Program& program = use(pass, tools ? Shader::film_tools : Shader::film);
+    bind_place(pass, program);
+    pass.bind(program, "u_top", "flow_top");
+    set_medium(program, medium);
+    set_tools(pass, program, medium);
+    draw_into(pass, film_target_[next], gl::overwrite_state);
+    cover_tiles(pass, program);
+    if (link_count_ > 0) {
+        const gl::Program& links = use(pass, Shader::flow_links);
+        bind(pass, links, "u_film", film());
+        bind(pass, links, "u_links", *links_);
+        bind(pass, links, "u_pulls", *pulls_);
+        set_medium(links, medium);
+        draw_into(pass, film_target_[next], gl::add_blend_state);
+        pass.draw_generated(GL_POINTS, 2 * link_count_, 1);
+    }
+    if (alive.count > 0) {
+        draw_into(pass, film_target_[next], gl::add_blend_state);
+        deposit(pass, medium, alive, deposit_, false, step);
+    }
+    film_now_ = next;
+}
+
+bool BloodGpu::draw_caps(const Pass& pass, const BloodMedium& medium, const DropRange& alive) {
+    if (alive.count <= 0) {
+        return false;
+    }
+    if (!caps_) {
+        caps_ = gl::Texture::make_2d(*gl_, size_, size_, PixelFormat::r16f, "shapes of drops");
+        caps_target_.emplace(*gl_, *caps_, "shapes of drops");
+    }
+    clear(pass, *caps_target_);
+    const gl::Program& program = use(pass, Shader::cap);
+    bind_place(pass, program);
+    bind(pass, program, "u_drops", drops());
+    pass.bind(program, "u_position", "position");
+    pass.bind(program, "u_metric", "metric");
+    set_medium(program, medium);
+    program.set("u_aspect", medium.drop.x);
+    program.set("u_first", static_cast<int>(alive.first % capacity()));
+    draw_into(pass, *caps_target_, gl::max_blend_state);
+    pass.draw_generated(GL_TRIANGLE_STRIP, 4, static_cast<int>(2 * alive.count));
+    return true;
+}
+
+void BloodGpu::ask_tiles(std::uint64_t tag) {
+    if (tile_answers_.in_flight() < 3) {
+        tile_answers_.start(marks_[marks_now_], tag);
+    }
+}
+
+std::optional<std::uint64_t> BloodGpu::all_still() {
+    std::optional<std::uint64_t> still;
+    while (const auto answer = tile_answers_.poll()) {
+        bool moves = false;
+        for (int y = 0; y < tiles_; ++y) {
+            for (int x = 0; x < tiles_; ++x) {
+                moves = moves || answer->image.at(x, y, 0) > 0.5F;
+            }
+        }
+        if (!moves) {
+            still = answer->tag;
+        }
+    }
+    return still;
+}
+
+}  // namespace viscera::tissue

@@ -1,0 +1,131 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "effects/tissue/seam_links.h"
+#include "engine/core/shader_source.h"
+#include "engine/gl/framebuffer.h"
+#include "engine/gl/pixel_transfer.h"
+#include "engine/gl/program.h"
+#include "engine/gl/texture.h"
+
+namespace viscera {
+class Pass;
+}
+
+namespace viscera::tissue {
+
+/// A drop to be, as the shader reads it (two RGBA32F texels).
+struct DropSpawn {
+    glm::vec2 uv{0.0F};
+    float volume_mm3 = 0.0F;
+    float radius_mm = 0.0F;  ///< of the place around `uv` in which it appears
+    float slot = 0.0F;       ///< in the ring
+    float seed = 0.0F;
+    float source = 0.0F;
+    float unused = 0.0F;
+};
+
+/// What the steps of one frame have in common, as the shaders want it.
+struct BloodMedium {
+    glm::vec4 flow{0.0F};  ///< mobility [1/(mm s)], residual [mm], time step [s], drying [mm/s]
+    glm::vec4 drop{0.0F};  ///< aspect, trail [mm], life [s], smallest volume [mm^3]
+    glm::vec3 down{0.0F};
+    float strength = 0.0F;  ///< of gravity, in units of the standard one
+    float sealed_energy = 1.0F;
+    bool open_edges = true;
+    std::vector<glm::vec4> tools;        ///< place [mm], radius [mm]
+    std::vector<glm::vec2> tool_powers;  ///< see tool_power()
+};
+
+/// Drops [first, first + count) of the ring.
+struct DropRange {
+    std::int64_t first = 0;
+    std::int64_t count = 0;
+};
+
+/// Film, drops and tiles on the GPU, and the passes that step them. All of it is bound to the size of the
+/// bake and to a number of drops. Every function draws into framebuffers of its own and leaves one of them
+/// bound.
+class BloodGpu {
+  public:
+    BloodGpu(const gl::Functions& gl, int size, int max_drops);
+
+    /// Programs that the functions below use, in the order that they expect.
+    [[nodiscard]] static std::vector<ProgramDesc> programs();
+
+    [[nodiscard]] int size() const { return size_; }
+    [[nodiscard]] std::int64_t capacity() const;
+
+    /// The surface is new or has moved, or gravity has turned. `empty`: nothing lies on it yet.
+    void take_surface(const Pass& pass, const BloodMedium& medium, bool empty);
+    /// Seams of another surface: reads the bake back, once.
+    void find_seams(const Pass& pass);
+    /// Looks which tiles have come to rest and which are to be stepped from now on.
+    void look_at_tiles(const Pass& pass, const BloodMedium& medium, const DropRange& alive, bool wake);
+    /// New drops; those that stood at their places become film first.
+    void spawn(const Pass& pass, const BloodMedium& medium, std::span<const DropSpawn> drops,
+               const DropRange& evicted);
+    void step(const Pass& pass, const BloodMedium& medium, const DropRange& alive, std::int64_t step);
+    /// Draws the drops' shapes for show(); false when there are none.
+    bool draw_caps(const Pass& pass, const BloodMedium& medium, const DropRange& alive);
+    [[nodiscard]] const gl::Texture& caps() const { return *caps_; }
+    /// Draws a quad over each tile that shows blood, with the program in use and into what is bound.
+    void cover_visible(const Pass& pass, const gl::Program& program) const;
+
+    /// Asks which tiles are to be stepped; the answer comes some frames later with the tag.
+    void ask_tiles(std::uint64_t tag);
+    /// The tag of an answer that says that no tile is, if one has come.
+    [[nodiscard]] std::optional<std::uint64_t> all_still();
+
+    [[nodiscard]] const gl::Texture& film() const { return film_[film_now_]; }
+    [[nodiscard]] const gl::Texture& drops() const { return drops_[drops_now_]; }
+    [[nodiscard]] const gl::Texture& ledger() const { return ledger_; }
+
+  private:
+    void bind_place(const Pass& pass, const gl::Program& program) const;
+    void set_medium(const gl::Program& program, const BloodMedium& medium) const;
+    void set_tools(const Pass& pass, const gl::Program& program, const BloodMedium& medium) const;
+    void cover_tiles(const Pass& pass, const gl::Program& program) const;
+    void deposit(const Pass& pass, const BloodMedium& medium, const DropRange& range,
+                 const gl::Texture& source, bool whole, std::int64_t step) const;
+    void mark_seams(const Pass& pass) const;
+    void mark_drops(const Pass& pass, const DropRange& range) const;
+    void draw_rows(const Pass& pass, const DropRange& range) const;
+
+    const gl::Functions* gl_;
+    int size_ = 0;
+    int tiles_ = 0;  ///< along each side
+    std::array<gl::Texture, 2> film_;
+    std::array<gl::Texture, 2> drops_;
+    gl::Texture deposit_;
+    std::array<gl::Texture, 2> marks_;   ///< of tiles: changed, visible
+    std::array<gl::Texture, 2> across_;  ///< of tiles: beyond a seam from marked ones
+    gl::Texture spawn_;
+    gl::Texture ledger_;  ///< volume that each source has given [mm^3]
+    std::optional<gl::Texture> links_;
+    std::optional<gl::Texture> pulls_;
+    std::optional<gl::Texture> caps_;
+    std::array<gl::Framebuffer, 2> film_target_;
+    std::array<gl::Framebuffer, 2> drops_target_;  ///< with the deposit
+    std::array<gl::Framebuffer, 2> drops_alone_;
+    std::array<gl::Framebuffer, 2> marks_target_;
+    std::array<gl::Framebuffer, 2> across_target_;
+    gl::Framebuffer ledger_target_;
+    std::optional<gl::Framebuffer> pulls_target_;
+    std::optional<gl::Framebuffer> caps_target_;
+    std::size_t film_now_ = 0;
+    std::size_t drops_now_ = 0;
+    std::size_t marks_now_ = 0;
+    int link_count_ = 0;
+    std::vector<DropSpawn> spawn_rows_;
+    gl::ReadBack tile_answers_;
+};
+
+}  // namespace viscera::tissue

@@ -1,0 +1,41 @@
+#include "effects/tissue/gravity.h"
+
+#include <cmath>
+
+#include "engine/core/log.h"
+
+namespace viscera::tissue {
+
+void GravityParams::visit(ParamVisitor& v) {
+    v.field({.name = "gravity_m_s2",
+             .doc = "Acceleration of what falls, in the world; by default that of a patient on the back.",
+             .unit = "m/s^2",
+             .min = -1000.0,
+             .max = 1000.0},
+            gravity_m_s2);
+    v.field({.name = "host_gravity",
+             .doc = "Name of the host's array of 3 floats [m/s^2] that takes its place; empty: none."},
+            host_gravity);
+}
+
+Gravity gravity_of(const GravityParams& params, const HostValues* values, Log& log) {
+    glm::dvec3 gravity = params.gravity_m_s2;
+    const HostValues::Entry* given =
+        values == nullptr || params.host_gravity.empty() ? nullptr : values->find(params.host_gravity);
+    if (given != nullptr) {
+        const auto& v = given->values;
+        if (v.size() == 3 && std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2])) {
+            gravity = {v[0], v[1], v[2]};
+        } else {
+            log.fault("tissue.gravity", "host values '" + params.host_gravity +
+                                            "' are not 3 finite numbers; the scene's gravity counts");
+        }
+    }
+    const double length = glm::length(gravity);
+    if (!(length > 0.0)) {
+        return {};
+    }
+    return {gravity / length, length / standard_gravity_m_s2};
+}
+
+}  // namespace viscera::tissue

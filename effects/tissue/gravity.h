@@ -1,0 +1,38 @@
+#pragma once
+
+#include <string>
+
+#include <glm/glm.hpp>
+
+#include "engine/core/params.h"
+#include "engine/runtime/frame.h"
+
+namespace viscera {
+class Log;
+}
+
+namespace viscera::tissue {
+
+inline constexpr double standard_gravity_m_s2 = 9.80665;
+
+/// Which way is down, and how strongly things fall.
+struct GravityParams {
+    glm::dvec3 gravity_m_s2{0.0, standard_gravity_m_s2, 0.0};
+    std::string host_gravity = "tissue.gravity";
+
+    void visit(ParamVisitor& v);
+};
+
+/// Gravity of one frame.
+struct Gravity {
+    glm::dvec3 down{0.0};   ///< unit vector, or 0 where nothing falls
+    double strength = 0.0;  ///< in units of standard gravity
+
+    bool operator==(const Gravity&) const = default;
+};
+
+/// The host's gravity (3 floats [m/s^2]) where it gives one, else the scene's. What is not finite or has
+/// another number of entries is a fault, and the scene's counts.
+[[nodiscard]] Gravity gravity_of(const GravityParams& params, const HostValues* values, Log& log);
+
+}  // namespace viscera::tissue

@@ -1,0 +1,68 @@
+#version 330 core
+#include "tissue/blood_place.glsl"
+#include "tissue/blood_drop.glsl"
+// A drop as it is seen: a quad around it in texture space, and another where a seam cuts it.
+uniform sampler2D u_drops;
+uniform sampler2D u_position;
+uniform sampler2D u_metric;
+uniform int u_first;
+flat out vec4 v_cap;     // place [mm], radius [mm]
+
+const float farthest = 24.0;  // [texels]
+
+vec2 extent_of(ivec2 texel, float radius) {
+    vec4 metric = texelFetch(u_metric, texel, 0);
+    float sine = sqrt(max(1.0 - metric.z * metric.z, 0.0025));
+    return min(radius / (max(metric.xy, vec2(1e-12)) * sine) + 1.0, vec2(farthest));
+}
+
+/// World position at a point between texels.
+vec3 world_at(vec2 texel) {
+    ivec2 last = textureSize(u_position, 0) - 1;
+    ivec2 at = ivec2(floor(texel));
+    vec2 t = texel - (vec2(at) + 0.5);
+    vec3 here = texelFetch(u_position, at, 0).xyz;
+    vec3 result = here;
+    for (int axis = 0; axis < 2; ++axis) {
+        float along = axis == 0 ? t.x : t.y;
+        ivec2 unit = (axis == 0 ? ivec2(1, 0) : ivec2(0, 1)) * (along < 0.0 ? -1 : 1);
+        vec4 next = texelFetch(u_position, clamp(at + unit, ivec2(0), last), 0);
+        result += next.w > 0.0 ? abs(along) * (next.xyz - here) : vec3(0.0);
+    }
+    return result;
+}
+
+void main() {
+    ivec2 ring = textureSize(u_drops, 0);
+    int index = (u_first + gl_InstanceID / 2) % (ring.x * ring.y);
+    vec4 drop = texelFetch(u_drops, ivec2(index % ring.x, index / ring.x), 0);
+    gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+    v_cap = vec4(0.0);
+    if (!(drop.z > 0.0)) {
+        return;
+    }
+    ivec2 size = textureSize(u_film, 0);
+    vec2 centre = drop.xy * vec2(size);
+    ivec2 at = clamp(ivec2(floor(centre)), ivec2(0), size - 1);
+    float radius = drop_radius(drop.z);
+    v_cap = vec4(world_at(centre), radius);
+    vec2 extent = extent_of(at, radius);
+    bool drawn = true;
+    if ((gl_InstanceID & 1) == 1) {
+        drawn = false;
+        for (int i = 0; i < 12; ++i) {
+            vec2 way = vec2(i % 4 < 2 ? float(1 - 2 * (i % 4)) : 0.0, i % 4 < 2 ? 0.0 : float(5 - 2 * (i % 4)));
+            vec2 probe = centre + way * extent * (1.0 - float(i / 4) * 0.3);
+            ivec2 probed = clamp(ivec2(floor(probe)), ivec2(0), size - 1);
+            if (!drawn && texelFetch(u_film, probed, 0).w < 0.0) {
+                centre = texelFetch(u_right, probed, 0).xy + 0.5;
+                drawn = true;
+            }
+        }
+        extent = 2.0 * extent_of(clamp(ivec2(floor(centre)), ivec2(0), size - 1), radius);
+    }
+    if (drawn) {
+        vec2 corner = vec2(float(gl_VertexID & 1), float(gl_VertexID >> 1)) * 2.0 - 1.0;
+        gl_Position = vec4(2.0 * (centre + corner * extent) / vec2(size) - 1.0, 0.0, 1.0);
+    }
+}

@@ -1,0 +1,45 @@
+#version 330 core
+#include "tissue/blood_place.glsl"
+#include "tissue/blood_drop.glsl"
+// Lays what drops leave behind onto the film: four points for each drop within its outline, another four in each step, so that in time
+// all of the outline is covered alike. A point changes one texel by the volume over that texel's area: no volume is lost, whatever the
+// map does to lengths.
+uniform sampler2D u_deposit;  // of blood_move.frag; or the drops themselves, which then go into the film as they are
+uniform sampler2D u_metric;
+uniform int u_first;   // of the drops, in the ring
+uniform int u_salt;    // of the step
+uniform bool u_whole;  // u_deposit holds drops
+flat out vec2 v_added;
+
+const int points = 4;
+
+void main() {
+    int width = textureSize(u_deposit, 0).x;
+    int count = width * textureSize(u_deposit, 0).y;
+    int index = (u_first + gl_VertexID / points) % count;
+    int k = gl_VertexID % points;
+    vec4 deposit = texelFetch(u_deposit, ivec2(index % width, index / width), 0);
+    vec2 size = vec2(textureSize(u_film, 0));
+    if (u_whole) {
+        deposit.xy *= size;
+        deposit.w = 1.0;
+    }
+    gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+    v_added = vec2(0.0);
+    if (deposit.z > 0.0) {
+        vec2 at = deposit.xy;
+        if (deposit.w < 1.5) {
+            vec4 metric = texelFetch(u_metric, ivec2(floor(at)), 0);
+            float radius = drop_radius(max(deposit.z, u_drop.w));
+            float r = radius * sqrt((float(k) + drop_noise(uint(index), uint(u_salt))) / float(points));
+            float angle = 6.2831853 * (drop_noise(uint(index), uint(u_salt) + 77777u) + 0.38196601 * float(k));
+            vec2 offset = clamp(texels_of(r * vec2(cos(angle), sin(angle)), metric), vec2(-12.0), vec2(12.0));
+            vec3 to = place_on_surface(at + offset);
+            at = to.z > 0.0 ? to.xy : at;
+        }
+        ivec2 texel = ivec2(floor(at));
+        float added = 0.25 * deposit.z / texelFetch(u_film, texel, 0).w;
+        v_added = deposit.w < 1.5 ? vec2(added, 0.0) : vec2(0.0, added);
+        gl_Position = vec4(2.0 * (vec2(texel) + 0.5) / size - 1.0, 0.0, 1.0);
+    }
+}

@@ -1,0 +1,54 @@
+#version 330 core
+// What drives a film through the parts of seams. A part joins a cell to one across the seam as if they were neighbours; its share of
+// their common face is at most one half, since the other side has parts of its own there.
+uniform sampler2D u_links;  // cell, cell across, side (0 right, 1 left, 2 top, 3 bottom), share
+uniform sampler2D u_position;
+uniform sampler2D u_normal;
+uniform sampler2D u_metric;
+uniform sampler2D u_film;
+uniform sampler2D u_gravity;
+uniform vec3 u_down;
+uniform float u_strength;
+layout(location = 0) out vec4 o_link;  // spread, drive [mm], area [mm^2]
+
+ivec2 last;
+
+vec3 position(ivec2 at) {
+    return texelFetch(u_position, clamp(at, ivec2(0), last), 0).xyz;
+}
+
+bool joined(ivec2 at) {
+    return texelFetch(u_film, clamp(at, ivec2(0), last), 0).w != 0.0;
+}
+
+void main() {
+    vec4 link = texelFetch(u_links, ivec2(gl_FragCoord.xy), 0);
+    o_link = vec4(0.0);
+    if (!(link.w > 0.0)) {
+        return;
+    }
+    last = textureSize(u_position, 0) - 1;
+    int width = last.x + 1;
+    ivec2 from = ivec2(int(link.x) % width, int(link.x) / width);
+    ivec2 to = ivec2(int(link.y) % width, int(link.y) / width);
+    int side = int(link.z);
+    ivec2 axis = side < 2 ? ivec2(1 - 2 * side, 0) : ivec2(0, 5 - 2 * side);
+    ivec2 along = abs(axis.yx);
+    vec4 metric = texelFetch(u_metric, from, 0);
+    float sine = sqrt(max(1.0 - metric.z * metric.z, 0.0025));
+    float ratio = clamp(max(metric.y, 1e-12) / max(metric.x, 1e-12), 1e-3, 1e3);
+    float conductance = (side < 2 ? ratio : 1.0 / ratio) / sine;
+    float skew = -metric.z / sine * float(axis.x + axis.y);
+    vec3 here = position(from);
+    bool before = joined(from - along);
+    bool after = joined(from + along);
+    vec3 across = ((after ? position(from + along) : here) - (before ? position(from - along) : here)) * (before && after ? 0.5 : 1.0);
+    float n = 0.5 * (max(-dot(u_down, texelFetch(u_normal, from, 0).xyz), 0.0) + max(-dot(u_down, texelFetch(u_normal, to, 0).xyz), 0.0));
+    float drive = conductance * dot(u_down, position(from + axis) - here) + skew * dot(u_down, across);
+    float area = min(texelFetch(u_film, from, 0).w, texelFetch(u_film, to, 0).w);
+    // As between neighbours (gravity.frag).
+    vec2 flow = abs(texelFetch(u_gravity, from, 0).xy);
+    float sum = flow.x + flow.y;
+    float share = sum > 0.0 ? 0.4 + 2.4 * (side < 2 ? flow.x : flow.y) / sum : 1.0;
+    o_link = vec4(link.w * u_strength * vec2(conductance * n, drive), area > 0.0 ? link.w * share * area : 0.0, 0.0);
+}

@@ -1,0 +1,75 @@
+#version 330 core
+#include "tissue/blood_common.glsl"
+#include "tissue/blood_place.glsl"
+#include "tissue/blood_drop.glsl"
+// One step of every drop: it runs down the surface, leaves a film behind, and gives itself up to the film where it comes to rest, meets
+// a film as deep as itself, or has grown old.
+uniform sampler2D u_drops;
+uniform sampler2D u_gravity;
+uniform float u_strength;  // of gravity, in units of standard gravity
+uniform bool u_open;
+#ifdef TOOLS
+#include "tissue/blood_tools.glsl"
+#endif
+layout(location = 0) out vec4 o_drop;
+layout(location = 1) out vec4 o_deposit;  // where [texels], volume [mm^3]; w: 1 to the film, 2 off the surface
+
+const float longest_step = 2.0;  // [texels]
+const float giving_up_s = 0.05;
+const float longest_end_s = 1.0;  // from its life's end until nothing is left of a drop
+const float slowest = 0.02;      // [mm/s]
+
+vec4 gravity_at(vec2 texel) {
+    return texelFetch(u_gravity, ivec2(floor(texel)), 0);
+}
+
+void main() {
+    vec4 drop = texelFetch(u_drops, ivec2(gl_FragCoord.xy), 0);
+    o_drop = vec4(0.0);
+    o_deposit = vec4(0.0);
+    if (!(drop.z > 0.0)) {
+        return;
+    }
+    float dt = u_flow.z;
+    vec2 size = vec2(textureSize(u_film, 0));
+    vec2 from = drop.xy * size;
+    float radius = drop_radius(drop.z);
+    float height = u_drop.x * radius;
+    float fastest = u_flow.x * (1.0 / 3.0) * height * height * u_strength;
+
+    vec4 g0 = gravity_at(from);
+    vec2 v0 = g0.xy * (g0.z * g0.w) * fastest * size;  // [texels/s]
+    float cap = min(1.0, longest_step / max(length(v0) * dt, 1e-20));
+    vec3 middle = place_on_surface(from + (0.5 * dt * cap) * v0);
+    vec4 g1 = middle.z > 0.0 ? gravity_at(middle.xy) : g0;
+    vec2 v1 = g1.xy * (g1.z * g1.w) * fastest * size;
+    cap = min(1.0, longest_step / max(length(v1) * dt, 1e-20));
+    // A direction holds in the chart in which it was read.
+    vec3 to = middle.z == 2.0 ? place_on_surface(middle.xy + (0.5 * dt * cap) * v1) : place_on_surface(from + (dt * cap) * v1);
+    bool falls = to.z == 0.0;
+    float speed = fastest * g1.z * cap;  // [mm/s]
+
+    float volume = drop.z;
+    float deposit = u_drop.y * 2.0 * radius * speed * dt;
+    float film = texelFetch(u_film, ivec2(floor(from)), 0).x;
+    bool rests = speed < slowest || film > 0.8 * height || drop.w > u_drop.z || (falls && !u_open);
+    if (rests) {
+        deposit = max(deposit, volume * (1.0 - exp(-dt / giving_up_s)));
+    }
+    float left = max(volume - deposit, 0.0);
+    float target = 1.0;
+    if (falls && u_open) {
+        left = 0.0;
+        target = 2.0;
+    }
+#ifdef TOOLS
+    if (taken(ivec2(floor(from)), height) > 0.1 * height) {
+        left = 0.0;
+        target = 2.0;
+    }
+#endif
+    left = left < u_drop.w || drop.w > u_drop.z + longest_end_s ? 0.0 : left;
+    // What the drop has lost is found from what it keeps, so that nothing is lost in rounding.
+    o_deposit = vec4(from, volume - left, target);
+    o_drop = left > 0.0 ? vec4((to.z > 0.0 ? to.xy : from) / size, left, drop.w + dt) : vec4(0.0);
+}

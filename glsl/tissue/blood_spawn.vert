@@ -1,0 +1,42 @@
+#version 330 core
+#include "tissue/blood_place.glsl"
+#include "tissue/blood_drop.glsl"
+// New drops, each a point at its place in the ring.
+uniform sampler2D u_spawn;  // two texels for each: u, v, volume [mm^3], radius of the source [mm]; place in the ring, seed, source, -
+uniform sampler2D u_metric;
+#ifdef ENERGY
+uniform sampler2D u_energy;
+uniform float u_sealed;  // energy at which tissue no longer bleeds
+#endif
+uniform ivec2 u_ring;  // size of the ring's texture, or of the ledger: volume by source
+flat out vec4 v_drop;
+
+void main() {
+    int width = textureSize(u_spawn, 0).x;
+    int i = 2 * gl_VertexID;
+    vec4 source = texelFetch(u_spawn, ivec2(i % width, i / width), 0);
+    vec4 more = texelFetch(u_spawn, ivec2(i % width + 1, i / width), 0);
+    vec2 size = vec2(textureSize(u_film, 0));
+    vec2 centre = source.xy * size;
+    uint seed = uint(more.y);
+    float r = source.w * sqrt(drop_noise(seed, 1u));
+    float angle = 6.2831853 * drop_noise(seed, 2u);
+    vec4 metric = texelFetch(u_metric, clamp(ivec2(floor(centre)), ivec2(0), ivec2(size) - 1), 0);
+    vec2 offset = clamp(texels_of(r * vec2(cos(angle), sin(angle)), metric), vec2(-12.0), vec2(12.0));
+    vec3 at = place_on_surface(centre + offset);
+    if (at.z == 0.0) {
+        at = place_on_surface(centre);
+    }
+    float volume = at.z > 0.0 ? source.z : 0.0;
+#ifdef ENERGY
+    float energy = texelFetch(u_energy, ivec2(at.xy / size * vec2(textureSize(u_energy, 0))), 0).r;
+    volume *= 1.0 - smoothstep(0.5 * u_sealed, u_sealed, energy);
+#endif
+    v_drop = vec4(at.xy / size, volume, 0.0);
+#ifdef LEDGER
+    ivec2 slot = ivec2(clamp(int(more.z), 0, u_ring.x - 1), 0);
+#else
+    ivec2 slot = ivec2(int(more.x) % u_ring.x, int(more.x) / u_ring.x);
+#endif
+    gl_Position = vec4(2.0 * (vec2(slot) + 0.5) / vec2(u_ring) - 1.0, 0.0, 1.0);
+}

@@ -1,0 +1,19 @@
+#version 330 core
+// The film on a surface that has just come or moved: what lies on a cell keeps its volume as the cell's area changes.
+uniform sampler2D u_film;
+uniform sampler2D u_metric;
+uniform sampler2D u_position;
+uniform sampler2D u_seam;
+uniform bool u_empty;  // nothing was there before
+layout(location = 0) out vec4 o_film;
+
+void main() {
+    ivec2 here = ivec2(gl_FragCoord.xy);
+    float coverage = texelFetch(u_position, here, 0).w;
+    float area = texelFetch(u_metric, here, 0).w;
+    bool cell = coverage > 0.75 && area > 1e-20 && area < 1e20;
+    bool gutter = !cell && coverage > 0.25 && coverage < 0.75 && texelFetch(u_seam, here, 0).x >= 0.0;
+    vec4 before = texelFetch(u_film, here, 0);
+    float scale = u_empty || !(before.w > 0.0) || !cell ? 0.0 : before.w / area;
+    o_film = vec4(u_empty ? vec3(0.0) : scale * before.xyz, cell ? area : gutter ? -1.0 : 0.0);
+}

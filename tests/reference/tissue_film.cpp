@@ -1,0 +1,249 @@
+#include "tests/reference/tissue_film.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace viscera::reference {
+namespace {
+
+using Texel = TissueSurface::Texel;
+
+bool joined(Texel kind) {
+    return kind == Texel::cell || kind == Texel::gutter;
+}
+
+struct Local {
+    double conductance = 0.0;  ///< |Pv| / (|Pu| sin)
+    double inverse = 0.0;      ///< |Pu| / (|Pv| sin)
+    double skew = 0.0;         ///< -cos / sin
+};
+
+Local local(const glm::dvec4& metric) {
+    const double sine = std::sqrt(std::max(1.0 - metric.z * metric.z, 0.0025));
+    return {metric.y / (metric.x * sine), metric.x / (metric.y * sine), -metric.z / sine};
+}
+
+/// Slope of a field along an axis at a texel: central, one-sided at borders.
+template <class Value>
+double slope(const TissueSurface& s, int x, int y, int dx, int dy, Value value) {
+    const bool before = joined(s.at(x - dx, y - dy));
+    const bool after = joined(s.at(x + dx, y + dy));
+    const double here = value(s.index(x, y));
+    const double low = before ? value(s.index(x - dx, y - dy)) : here;
+    const double high = after ? value(s.index(x + dx, y + dy)) : here;
+    return before && after ? 0.5 * (high - low) : high - low;
+}
+
+struct Builder {
+    const TissueSurface& s;
+    const glm::dvec3 gravity;
+    const bool open_edges;
+    std::vector<double> height;  ///< against gravity, times its strength
+    std::vector<double> up;
+
+    Builder(const TissueSurface& surface, const glm::dvec3& g, bool open)
+        : s(surface), gravity(g), open_edges(open) {
+        for (std::size_t i = 0; i < s.position.size(); ++i) {
+            height.push_back(-glm::dot(gravity, s.position[i]));
+            up.push_back(std::max(-glm::dot(gravity, s.normal[i]), 0.0));
+        }
+    }
+    double z(std::size_t i) const { return height[i]; }
+
+    /// Direction downhill in texels, up to a scale.
+    glm::dvec2 downhill(int x, int y) const {
+        glm::dvec3 du;
+        glm::dvec3 dv;
+        for (int axis = 0; axis < 3; ++axis) {
+            const auto coordinate = [&](std::size_t i) { return s.position[i][axis]; };
+            du[axis] = slope(s, x, y, 1, 0, coordinate);
+            dv[axis] = slope(s, x, y, 0, 1, coordinate);
+        }
+        const double uu = glm::dot(du, du);
+        const double uv = glm::dot(du, dv);
+        const double vv = glm::dot(dv, dv);
+        const glm::dvec2 pull(glm::dot(gravity, du), glm::dot(gravity, dv));
+        const double det = uu * vv - uv * uv;
+        const glm::dvec2 flow(vv * pull.x - uv * pull.y, uu * pull.y - uv * pull.x);
+        const double factor2 = glm::dot(flow, pull) / det;
+        return det > 0.0 && factor2 > 1e-8 * glm::dot(gravity, gravity) ? flow / det : glm::dvec2(0.0);
+    }
+    /// Four times the share of a cell's content that may leave it in a step through faces across an axis.
+    double share(int x, int y, int dx) const {
+        const glm::dvec2 flow = glm::abs(downhill(x, y));
+        const double sum = flow.x + flow.y;
+        return sum > 0.0 ? 0.4 + 2.4 * (dx != 0 ? flow.x : flow.y) / sum : 1.0;
+    }
+
+    FlowFace face(int x, int y, int dx, int dy) const {
+        const Texel a = s.at(x, y);
+        const Texel b = s.at(x + dx, y + dy);
+        const auto zed = [this](std::size_t i) { return z(i); };
+        if (a == Texel::cell && b == Texel::cell) {
+            const std::size_t i = s.index(x, y);
+            const std::size_t j = s.index(x + dx, y + dy);
+            const Local la = local(s.metric[i]);
+            const Local lb = local(s.metric[j]);
+            const double c = 0.5 * (dx == 1 ? la.conductance + lb.conductance : la.inverse + lb.inverse);
+            const double k = 0.5 * (la.skew + lb.skew);
+            const double across = 0.5 * (slope(s, x, y, dy, dx, zed) + slope(s, x + dx, y + dy, dy, dx, zed));
+            const double n = 0.5 * (up[i] + up[j]);
+            const double drive = -(c * (z(j) - z(i)) + k * across);
+            const double portion = drive > 0.0 ? share(x, y, dx) : share(x + dx, y + dy, dx);
+            return {c * n, k * n, drive, portion * std::min(s.metric[i].w, s.metric[j].w)};
+        }
+        if (!open_edges || (a == Texel::cell) == (b == Texel::cell) || a == Texel::gutter ||
+            b == Texel::gutter) {
+            return {};
+        }
+        // Over an open border the film goes on as the surface falls just before it.
+        const int cx = a == Texel::cell ? x : x + dx;
+        const int cy = a == Texel::cell ? y : y + dy;
+        const std::size_t i = s.index(cx, cy);
+        const Local l = local(s.metric[i]);
+        const double drive = -((dx == 1 ? l.conductance : l.inverse) * slope(s, cx, cy, dx, dy, zed) +
+                               l.skew * slope(s, cx, cy, dy, dx, zed));
+        const bool outward = (a == Texel::cell) == (drive > 0.0);
+        return outward ? FlowFace{0.0, 0.0, drive, share(cx, cy, dx) * s.metric[i].w} : FlowFace{};
+    }
+
+    void link(int x, int y, int dx, int dy, std::vector<FlowLink>& links) const {
+        if (s.at(x, y) != Texel::cell || s.at(x + dx, y + dy) != Texel::gutter) {
+            return;
+        }
+        const std::size_t i = s.index(x, y);
+        const std::size_t g = s.index(x + dx, y + dy);
+        const glm::dvec2 place = s.seam[g] * glm::dvec2(s.width, s.height) - 0.5;
+        const glm::ivec2 low(glm::floor(place));
+        const glm::dvec2 t = place - glm::dvec2(low);
+        std::array<std::size_t, 4> to{};
+        std::array<double, 4> weight{};
+        double sum = 0.0;
+        for (int n = 0; n < 4; ++n) {
+            const glm::ivec2 corner(low.x + (n & 1), low.y + (n >> 1));
+            if (s.at(corner.x, corner.y) != Texel::cell) {
+                continue;
+            }
+            const auto slot = static_cast<std::size_t>(n);
+            const double w = ((n & 1) != 0 ? t.x : 1.0 - t.x) * ((n >> 1) != 0 ? t.y : 1.0 - t.y);
+            to[slot] = s.index(corner.x, corner.y);
+            weight[slot] = w > 1e-3 ? w : 0.0;
+            sum += weight[slot];
+        }
+        const Local l = local(s.metric[i]);
+        const double c = dx != 0 ? l.conductance : l.inverse;
+        const double sign = dx + dy;
+        const double across =
+            slope(s, x, y, std::abs(dy), std::abs(dx), [this](std::size_t j) { return z(j); });
+        for (std::size_t n = 0; n < 4; ++n) {
+            if (weight[n] > 0.0) {
+                const double part = 0.5 * weight[n] / sum;
+                links.push_back({i, to[n], part * c * 0.5 * (up[i] + up[to[n]]),
+                                 -part * (c * (z(g) - z(i)) + sign * l.skew * across),
+                                 part * share(x, y, dx) * std::min(s.metric[i].w, s.metric[to[n]].w)});
+            }
+        }
+    }
+};
+
+/// Volume that goes from a to b in a step [mm^3], negative the other way.
+double exchange(double drive, double spread, double area, double a, double b, const FilmParams& p,
+                double dt) {
+    const double total = drive;
+    const double moving = std::max((total > 0.0 ? a : b) - p.residual_mm, 0.0);
+    const double limit = area / (8.0 * dt * std::max(spread, 1e-6));
+    const double mobility = std::min(p.mobility_per_mm_s * moving * moving * moving / 3.0, limit);
+    const double most = 0.25 * moving * area;
+    return std::clamp(dt * mobility * total, -most, most);
+}
+
+}  // namespace
+
+Flow flow_of(const TissueSurface& surface, const glm::dvec3& gravity, bool open_edges) {
+    const Builder builder(surface, gravity, open_edges);
+    Flow flow;
+    for (int y = 0; y < surface.height; ++y) {
+        for (int x = 0; x < surface.width; ++x) {
+            flow.right.push_back(builder.face(x, y, 1, 0));
+            flow.top.push_back(builder.face(x, y, 0, 1));
+            const bool cell = surface.at(x, y) == Texel::cell;
+            flow.area_mm2.push_back(cell ? surface.metric[surface.index(x, y)].w : 0.0);
+            builder.link(x, y, 1, 0, flow.links);
+            builder.link(x, y, -1, 0, flow.links);
+            builder.link(x, y, 0, 1, flow.links);
+            builder.link(x, y, 0, -1, flow.links);
+        }
+    }
+    return flow;
+}
+
+void Film::step(const TissueSurface& s, const Flow& flow, const FilmParams& p, double dt) {
+    std::vector<double> change(height_mm.size(), 0.0);  // [mm^3]
+    std::vector<double> gone(height_mm.size(), 0.0);
+    const auto at = [&](std::size_t i) { return height_mm[i]; };
+    const auto pass = [&](int x, int y, int dx, int dy, const FlowFace& face) {
+        if (face.area_mm2 <= 0.0) {
+            return;
+        }
+        const bool from_cell = s.at(x, y) == Texel::cell;
+        const bool to_cell = s.at(x + dx, y + dy) == Texel::cell;
+        const std::size_t i = from_cell ? s.index(x, y) : s.index(x + dx, y + dy);
+        const std::size_t j = to_cell ? s.index(x + dx, y + dy) : i;
+        double drive = face.drive - face.spread * (at(j) - at(i));
+        if (face.skew != 0.0) {
+            drive -= face.skew * 0.5 * (slope(s, x, y, dy, dx, at) + slope(s, x + dx, y + dy, dy, dx, at));
+        }
+        const double volume = exchange(drive, face.spread, face.area_mm2, at(i), at(j), p, dt);
+        if (from_cell) {
+            change[i] -= volume;
+        }
+        if (to_cell) {
+            change[j] += volume;
+        }
+        if (from_cell != to_cell) {
+            gone[i] += std::abs(volume);
+        }
+    };
+    for (int y = 0; y < s.height; ++y) {
+        for (int x = 0; x < s.width; ++x) {
+            if (x + 1 < s.width) {
+                pass(x, y, 1, 0, flow.right[s.index(x, y)]);
+            }
+            if (y + 1 < s.height) {
+                pass(x, y, 0, 1, flow.top[s.index(x, y)]);
+            }
+        }
+    }
+    for (const FlowLink& link : flow.links) {
+        const double drive = link.drive - link.spread * (at(link.to) - at(link.from));
+        const double volume = exchange(drive, link.spread, link.area_mm2, at(link.from), at(link.to), p, dt);
+        change[link.from] -= volume;
+        change[link.to] += volume;
+    }
+    for (std::size_t i = 0; i < height_mm.size(); ++i) {
+        if (flow.area_mm2[i] > 0.0) {
+            double h = height_mm[i] + change[i] / flow.area_mm2[i];
+            const double dried = std::min(std::max(h, 0.0), p.drying_mm_s * dt);
+            gone_mm[i] += gone[i] / flow.area_mm2[i] + dried;
+            height_mm[i] = h - dried;
+        }
+    }
+}
+
+double Film::volume_mm3(const Flow& flow) const {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < height_mm.size(); ++i) {
+        sum += height_mm[i] * flow.area_mm2[i];
+    }
+    return sum;
+}
+
+double Film::gone_mm3(const Flow& flow) const {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < gone_mm.size(); ++i) {
+        sum += gone_mm[i] * flow.area_mm2[i];
+    }
+    return sum;
+}
+
+}  // namespace viscera::reference
