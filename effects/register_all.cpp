@@ -14,6 +14,7 @@
 #include "effects/tissue/bake_effect.h"
 #include "effects/tissue/bipolar_effect.h"
 #include "effects/tissue/coagulate_effect.h"
+#include "effects/tissue/blood_account_effect.h"
 #include "effects/tissue/blood_effect.h"
 #include "effects/tissue/gravity_effect.h"
 #include "effects/volume/limits_effect.h"
@@ -71,6 +72,8 @@ void register_all(Registry& registry) {
                  [] { return std::make_unique<tissue::GravityEffect>(); });
     registry.add("tissue.blood", "Blood that runs down a surface as drops and as a film.",
                  [] { return std::make_unique<tissue::BloodEffect>(); });
+    registry.add("tissue.blood_account", "How much blood the wounds gave, and where it is.",
+                 [] { return std::make_unique<tissue::BloodAccountEffect>(); });
     registry.add("filter.gaussian", "One direction of a Gaussian blur.",
                  [] { return std::make_unique<filter::GaussianEffect>(); });
     registry.add("picture.image", "A picture file as a target.",

@@ -51,36 +51,38 @@ void BloodEffect::validate() const {
 
 std::vector<Port> BloodEffect::ports() const {
     const SizeRule size{.width = params_.size, .height = params_.size};
-    return {read("position", "tissue.position", "Of the bake."),
-            read("normal", "tissue.normal", "Of the bake."),
-            read("metric", "tissue.metric", "Of the bake."),
-            read("seam", "tissue.seam", "Of the bake."),
-            read("gravity", "tissue.gravity", "Of tissue.gravity."),
-            read("flow_right", "tissue.flow_right", "Of tissue.gravity."),
-            read("flow_top", "tissue.flow_top", "Of tissue.gravity."),
-            read("energy", "tissue.energy", "Where tissue is coagulated, wounds do not bleed.", true),
-            {.name = "height",
-             .access = Access::write,
-             .target = "tissue.blood_height",
-             .doc = "Thickness of the blood [mm].",
-             .format = PixelFormat::r16f,
-             .size = size},
-            {.name = "colour",
-             .access = Access::write,
-             .target = "tissue.blood_color",
-             .doc = "What the tissue's colour is multiplied by; alpha: how much blood covers it.",
-             .format = PixelFormat::rgba16f,
-             .size = size,
-             .clear = {1.0F, 1.0F, 1.0F, 0.0F},
-             .optional = true},
-            {.name = "normal_map",
-             .access = Access::write,
-             .target = "tissue.blood_normal",
-             .doc = "Normal of the blood's surface: -x/z and -y/z are its slopes [mm/mm] along u and v.",
-             .format = PixelFormat::rgba16f,
-             .size = size,
-             .clear = {0.0F, 0.0F, 1.0F, 0.0F},
-             .optional = true}};
+    return {
+        read("position", "tissue.position", "Of the bake."),
+        read("normal", "tissue.normal", "Of the bake."),
+        read("metric", "tissue.metric", "Of the bake."),
+        read("seam", "tissue.seam", "Of the bake."),
+        read("gravity", "tissue.gravity", "Of tissue.gravity."),
+        read("flow_right", "tissue.flow_right", "Of tissue.gravity."),
+        read("flow_top", "tissue.flow_top", "Of tissue.gravity."),
+        read("energy", "tissue.energy", "Where tissue is coagulated, wounds do not bleed.", true),
+        read("spill", "tissue.blood_spill", "Thickness [mm] of blood that lies there at the start.", true),
+        {.name = "height",
+         .access = Access::write,
+         .target = "tissue.blood_height",
+         .doc = "Thickness of the blood [mm].",
+         .format = PixelFormat::r16f,
+         .size = size},
+        {.name = "colour",
+         .access = Access::write,
+         .target = "tissue.blood_color",
+         .doc = "What the tissue's colour is multiplied by; alpha: how much blood covers it.",
+         .format = PixelFormat::rgba16f,
+         .size = size,
+         .clear = {1.0F, 1.0F, 1.0F, 0.0F},
+         .optional = true},
+        {.name = "normal_map",
+         .access = Access::write,
+         .target = "tissue.blood_normal",
+         .doc = "Normal of the blood's surface: -x/z and -y/z are its slopes [mm/mm] along u and v.",
+         .format = PixelFormat::rgba16f,
+         .size = size,
+         .clear = {0.0F, 0.0F, 1.0F, 0.0F},
+         .optional = true}};
 }
 
 void BloodEffect::check_sizes(const Prepare& prepare) const {
@@ -117,6 +119,7 @@ Work BloodEffect::prepare(Prepare& prepare) {
                        .add(to_world_)
                        .add(gravity_.down)
                        .add(gravity_.strength)
+                       .add(params_.gravity.spreading)
                        .add(params_.open_edges)
                        .value();
     collect_wounds(params_, frame.values, prepare.log(), wounds_);
@@ -127,6 +130,7 @@ Work BloodEffect::prepare(Prepare& prepare) {
     target_step_ = step_at(frame.time_s, rate);
     if (!state.begun || target_step_ < state.step || state.steps_per_s != rate) {
         state.begin_anew(target_step_, rate, params_.liquid.drop_life_s);
+        state.bled = state.moving = prepare.has("spill");
     }
     const auto gap = std::max(static_cast<std::int64_t>(longest_gap_s * rate), std::int64_t{1});
     const bool runs = bleeds(std::max(state.step, target_step_ - gap), target_step_);
@@ -183,6 +187,7 @@ void BloodEffect::set_medium() {
         glm::vec4(liquid.drop_aspect, liquid.trail_mm, liquid.drop_life_s, smallest_drop_share * drop);
     medium_.down = glm::vec3(gravity_.down);
     medium_.strength = static_cast<float>(gravity_.strength);
+    medium_.spreading = static_cast<float>(params_.gravity.spreading);
     medium_.open_edges = params_.open_edges;
     medium_.sealed_energy = static_cast<float>(params_.sealed_energy);
 }
@@ -211,7 +216,7 @@ void BloodEffect::update_surface(const Pass& pass) {
         state.gpu->find_seams(pass);
     }
     state.gpu->take_surface(pass, medium_, empty);
-    if (!empty) {
+    if (state.bled) {
         state.moving = true;
         state.gpu->look_at_tiles(pass, medium_, state.ring.alive(), true);
         state.disturbed_at = ++state.looks;
@@ -273,7 +278,8 @@ void BloodEffect::draw(const Pass& pass) {
     BloodState& state = *state_;
     GLint target = 0;  // of this pass; the steps below draw elsewhere
     pass.gl().GetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &target);
-    if (!state.gpu) {
+    if (!state.gpu || state.gpu_shape_key != state.shape_key) {
+        state.gpu_shape_key = state.shape_key;
         state.gpu = std::make_unique<BloodGpu>(pass.gl(), params_.size, params_.liquid.max_drops);
         state.surface_key = state.seam_key = 0;
     }

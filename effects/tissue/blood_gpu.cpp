@@ -10,6 +10,7 @@ namespace {
 /// Index into programs().
 enum class Shader : std::size_t {
     start,
+    start_spill,
     link,
     film,
     film_tools,
@@ -79,6 +80,7 @@ std::vector<ProgramDesc> BloodGpu::programs() {
     const char* whole = "common/fullscreen.vert";
     const char* tile = "tissue/blood_tile.vert";
     return {{whole, "tissue/blood_start.frag", {}},
+            {whole, "tissue/blood_start.frag", {"SPILL"}},
             {whole, "tissue/blood_link.frag", {}},
             {tile, "tissue/blood_film.frag", {}},
             {tile, "tissue/blood_film.frag", {"TOOLS"}},
@@ -134,6 +136,7 @@ void BloodGpu::set_medium(const gl::Program& program, const BloodMedium& medium)
     program.set("u_down", medium.down);
     program.set("u_strength", medium.strength);
     program.set("u_open", medium.open_edges);
+    program.set("u_spreading", medium.spreading);
 }
 
 void BloodGpu::set_tools(const Pass& pass, const gl::Program& program, const BloodMedium& medium) const {
@@ -157,7 +160,11 @@ void BloodGpu::cover_visible(const Pass& pass, const gl::Program& program) const
 }
 
 void BloodGpu::take_surface(const Pass& pass, const BloodMedium& medium, bool empty) {
-    const gl::Program& program = use(pass, Shader::start);
+    const bool spill = empty && pass.has("spill");
+    const gl::Program& program = use(pass, spill ? Shader::start_spill : Shader::start);
+    if (spill) {
+        pass.bind(program, "u_spill", "spill");
+    }
     pass.bind(program, "u_metric", "metric");
     pass.bind(program, "u_position", "position");
     pass.bind(program, "u_seam", "seam");

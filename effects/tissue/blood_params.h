@@ -62,7 +62,7 @@ struct LiquidParams {
     double trail_mm = 0.01;
     double drop_life_s = 20.0;
     int max_drops = 16384;
-    double steps_per_s = 240.0;
+    double steps_per_s = 120.0;
 
     void visit(ParamVisitor& v);
     /// Of a film under standard gravity: density times gravity over viscosity [1/(mm s)].

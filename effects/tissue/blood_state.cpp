@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/hash.h"
+
 namespace viscera::tissue {
 namespace {
 
@@ -44,6 +46,10 @@ DropRange DropRing::add(std::int64_t count, std::int64_t capacity) {
     return evicted;
 }
 
+std::shared_ptr<BloodState> BloodState::find(Assets& assets, std::string_view name) {
+    return assets.shared<BloodState>(Hash().add(name).value(), [] { return std::make_shared<BloodState>(); });
+}
+
 void BloodState::begin_anew(std::int64_t at, double rate, double drop_life_s) {
     begun = true;
     bled = moving = false;
@@ -55,6 +61,7 @@ void BloodState::begin_anew(std::int64_t at, double rate, double drop_life_s) {
     meters.assign(most_wounds, {});
     seed = 0;
     tool_count = 0;
+    flying_mm3 = lost_mm3 = 0.0;
 }
 
 }  // namespace viscera::tissue

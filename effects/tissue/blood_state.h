@@ -8,6 +8,7 @@
 
 #include "effects/tissue/blood_gpu.h"
 #include "effects/tissue/blood_sources.h"
+#include "engine/runtime/assets.h"
 
 namespace viscera::tissue {
 
@@ -44,7 +45,9 @@ struct BloodState {
     bool moving = false;    ///< something may change without a source
     std::int64_t step = 0;  ///< the next one, on the grid of times
     double steps_per_s = 0.0;
-    std::uint64_t version = 0;  ///< of what it shows
+    std::uint64_t version = 0;        ///< of what it shows
+    std::uint64_t shape_key = 0;      ///< of the mesh, the size and the number of drops
+    std::uint64_t gpu_shape_key = 0;  ///< the same, of what `gpu` was made for
     std::uint64_t surface_key = 0;
     std::uint64_t seam_key = 0;
     std::uint64_t looks = 0;         ///< at the tiles
@@ -53,7 +56,11 @@ struct BloodState {
     DropRing ring;
     std::vector<DropMeter> meters;
     std::uint32_t seed = 0;
+    double flying_mm3 = 0.0;  ///< of jets in the air
+    double lost_mm3 = 0.0;    ///< of jets that met nothing
 
+    /// The state of a name, made when it is first asked for.
+    [[nodiscard]] static std::shared_ptr<BloodState> find(Assets& assets, std::string_view name);
     /// Empty, at a step.
     void begin_anew(std::int64_t at, double rate, double drop_life_s);
 };

@@ -16,6 +16,13 @@ void GravityParams::visit(ParamVisitor& v) {
     v.field({.name = "host_gravity",
              .doc = "Name of the host's array of 3 floats [m/s^2] that takes its place; empty: none."},
             host_gravity);
+    v.field(
+        {.name = "spreading",
+         .doc = "Least share of gravity that levels a film, however steep the surface: stands for surface "
+                "tension.",
+         .min = 0.0,
+         .max = 1.0},
+        spreading);
 }
 
 Gravity gravity_of(const GravityParams& params, const HostValues* values, Log& log) {

@@ -19,6 +19,7 @@ inline constexpr double standard_gravity_m_s2 = 9.80665;
 struct GravityParams {
     glm::dvec3 gravity_m_s2{0.0, standard_gravity_m_s2, 0.0};
     std::string host_gravity = "tissue.gravity";
+    double spreading = 0.15;
 
     void visit(ParamVisitor& v);
 };

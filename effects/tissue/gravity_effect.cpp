@@ -70,6 +70,7 @@ void GravityEffect::draw(const Pass& pass) {
     program.set("u_down", glm::vec3(gravity_.down));
     program.set("u_strength", static_cast<float>(gravity_.strength));
     program.set("u_open", params_.open_edges);
+    program.set("u_spreading", static_cast<float>(params_.gravity.spreading));
     pass.draw_fullscreen();
 }
 

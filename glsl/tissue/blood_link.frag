@@ -9,6 +9,8 @@ uniform sampler2D u_film;
 uniform sampler2D u_gravity;
 uniform vec3 u_down;
 uniform float u_strength;
+uniform float u_spreading;
+
 layout(location = 0) out vec4 o_link;  // spread, drive [mm], area [mm^2]
 
 ivec2 last;
@@ -43,7 +45,8 @@ void main() {
     bool before = joined(from - along);
     bool after = joined(from + along);
     vec3 across = ((after ? position(from + along) : here) - (before ? position(from - along) : here)) * (before && after ? 0.5 : 1.0);
-    float n = 0.5 * (max(-dot(u_down, texelFetch(u_normal, from, 0).xyz), 0.0) + max(-dot(u_down, texelFetch(u_normal, to, 0).xyz), 0.0));
+    float n = 0.5 * (max(-dot(u_down, texelFetch(u_normal, from, 0).xyz), u_spreading) +
+                     max(-dot(u_down, texelFetch(u_normal, to, 0).xyz), u_spreading));
     float drive = conductance * dot(u_down, position(from + axis) - here) + skew * dot(u_down, across);
     float area = min(texelFetch(u_film, from, 0).w, texelFetch(u_film, to, 0).w);
     // As between neighbours (gravity.frag).

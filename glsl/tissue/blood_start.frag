@@ -5,6 +5,9 @@ uniform sampler2D u_metric;
 uniform sampler2D u_position;
 uniform sampler2D u_seam;
 uniform bool u_empty;  // nothing was there before
+#ifdef SPILL
+uniform sampler2D u_spill;  // what lies there at the start [mm]
+#endif
 layout(location = 0) out vec4 o_film;
 
 void main() {
@@ -15,5 +18,9 @@ void main() {
     bool gutter = !cell && coverage > 0.25 && coverage < 0.75 && texelFetch(u_seam, here, 0).x >= 0.0;
     vec4 before = texelFetch(u_film, here, 0);
     float scale = u_empty || !(before.w > 0.0) || !cell ? 0.0 : before.w / area;
-    o_film = vec4(u_empty ? vec3(0.0) : scale * before.xyz, cell ? area : gutter ? -1.0 : 0.0);
+    vec3 start = vec3(0.0);
+#ifdef SPILL
+    start.x = cell ? clamp(texelFetch(u_spill, ivec2(gl_FragCoord.xy / vec2(textureSize(u_film, 0)) * vec2(textureSize(u_spill, 0))), 0).r, 0.0, 1e4) : 0.0;
+#endif
+    o_film = vec4(u_empty ? start : scale * before.xyz, cell ? area : gutter ? -1.0 : 0.0);
 }

@@ -7,6 +7,7 @@ uniform sampler2D u_seam;    // UV where the surface goes on; -1: nowhere
 uniform vec3 u_down;         // direction of gravity, or 0
 uniform float u_strength;    // in units of standard gravity
 uniform bool u_open;         // a film runs off open borders
+uniform float u_spreading;   // least share of gravity that levels a film
 layout(location = 0) out vec4 o_gravity;  // direction in UV, |tangential| / |gravity|, UV per mm along it
 layout(location = 1) out vec4 o_right;    // face to the right: spread, skew, drive [mm], share of area [mm^2]; in gutters see below
 layout(location = 2) out vec4 o_top;      // face to the top
@@ -58,7 +59,7 @@ Local local(ivec2 at) {
 }
 
 float upward(ivec2 at) {
-    return max(-dot(u_down, texelFetch(u_normal, at, 0).xyz), 0.0);
+    return max(-dot(u_down, texelFetch(u_normal, at, 0).xyz), u_spreading);
 }
 
 // Positions count from a point nearby, which keeps the digits of a surface far from the origin.

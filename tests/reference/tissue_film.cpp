@@ -41,11 +41,11 @@ struct Builder {
     std::vector<double> height;  ///< against gravity, times its strength
     std::vector<double> up;
 
-    Builder(const TissueSurface& surface, const glm::dvec3& g, bool open)
+    Builder(const TissueSurface& surface, const glm::dvec3& g, double spreading, bool open)
         : s(surface), gravity(g), open_edges(open) {
         for (std::size_t i = 0; i < s.position.size(); ++i) {
             height.push_back(-glm::dot(gravity, s.position[i]));
-            up.push_back(std::max(-glm::dot(gravity, s.normal[i]), 0.0));
+            up.push_back(std::max(-glm::dot(gravity, s.normal[i]), spreading * glm::length(gravity)));
         }
     }
     double z(std::size_t i) const { return height[i]; }
@@ -159,8 +159,8 @@ double exchange(double drive, double spread, double area, double a, double b, co
 
 }  // namespace
 
-Flow flow_of(const TissueSurface& surface, const glm::dvec3& gravity, bool open_edges) {
-    const Builder builder(surface, gravity, open_edges);
+Flow flow_of(const TissueSurface& surface, const glm::dvec3& gravity, double spreading, bool open_edges) {
+    const Builder builder(surface, gravity, spreading, open_edges);
     Flow flow;
     for (int y = 0; y < surface.height; ++y) {
         for (int x = 0; x < surface.width; ++x) {

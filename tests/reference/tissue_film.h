@@ -52,8 +52,10 @@ struct Flow {
     std::vector<FlowLink> links;
 };
 
-/// `gravity`: in units of standard gravity; `open_edges`: film runs off open borders.
-[[nodiscard]] Flow flow_of(const TissueSurface& surface, const glm::dvec3& gravity, bool open_edges);
+/// `gravity`: in units of standard gravity; `spreading`: least share of gravity that levels a film;
+/// `open_edges`: film runs off open borders.
+[[nodiscard]] Flow flow_of(const TissueSurface& surface, const glm::dvec3& gravity, double spreading,
+                           bool open_edges);
 
 struct FilmParams {
     double mobility_per_mm_s = 2600.0;  ///< density times standard gravity over viscosity [1/(mm s)]
