@@ -41,10 +41,10 @@ Work BloodAccountEffect::prepare(Prepare& prepare) {
 }
 
 void BloodAccountEffect::draw(const Pass& pass) {
-    const gl::Program& program = pass.use(0);
     if (!state_->gpu) {
-        return;
+        return;  // no pass makes blood of this name
     }
+    const gl::Program& program = pass.use(0);
     pass.bind(program, "u_film", state_->gpu->film(), gl::Filter::nearest);
     pass.bind(program, "u_drops", state_->gpu->drops(), gl::Filter::nearest);
     pass.bind(program, "u_ledger", state_->gpu->ledger(), gl::Filter::nearest);

@@ -103,13 +103,13 @@ Work BloodEffect::prepare(Prepare& prepare) {
         parameters_key_ = prepare.parameters_key();
         mesh_ = SurfaceMesh::load(prepare.assets(), params_.mesh);
         to_world_ = placement_matrix(params_.mesh.placement, mesh_->centre());
-        const std::uint64_t key = Hash()
-                                      .add(params_.state)
-                                      .add(params_.size)
-                                      .add(params_.liquid.max_drops)
-                                      .add(mesh_->key())
-                                      .value();
-        state_ = prepare.assets().shared<BloodState>(key, [] { return std::make_shared<BloodState>(); });
+        state_ = BloodState::find(prepare.assets(), params_.state);
+        const std::uint64_t shape =
+            Hash().add(params_.size).add(params_.liquid.max_drops).add(mesh_->key()).value();
+        if (state_->shape_key != shape) {
+            state_->shape_key = shape;
+            state_->begun = false;
+        }
     }
     const Frame& frame = prepare.frame();
     mesh_->move(frame.values, params_.mesh.host_positions, prepare.log());
@@ -219,7 +219,8 @@ void BloodEffect::update_surface(const Pass& pass) {
     if (state.bled) {
         state.moving = true;
         state.gpu->look_at_tiles(pass, medium_, state.ring.alive(), true);
-        state.disturbed_at = ++state.looks;
+        state.looked_at = state.step;
+        state.disturbed_at = ++state.looks + 1;
     }
 }
 
@@ -250,8 +251,11 @@ void BloodEffect::run_step(const Pass& pass) {
     set_tools(step);
     collect_drops(step);
     state.ring.pass_to(step);
-    if (step % steps_per_look == 0 || medium_.tools.size() != state.tool_count) {
+    // Two looks without a step between them would find that nothing has changed.
+    const bool due = step % steps_per_look == 0 && step != state.looked_at;
+    if (due || medium_.tools.size() != state.tool_count) {
         state.gpu->look_at_tiles(pass, medium_, state.ring.alive(), !medium_.tools.empty());
+        state.looked_at = step;
         ++state.looks;
     }
     if (!medium_.tools.empty() || state.tool_count != 0) {

@@ -64,9 +64,9 @@ void draw_into(const Pass& pass, const gl::Framebuffer& target, const gl::Raster
     gl::apply(pass.gl(), state, {0, 0, target.width(), target.height()});
 }
 
-void clear(const Pass& pass, const gl::Framebuffer& target) {
+void clear(const Pass& pass, const gl::Framebuffer& target, float value = 0.0F) {
     draw_into(pass, target, gl::overwrite_state);
-    target.clear_colour(0, {0.0F, 0.0F, 0.0F, 0.0F});
+    target.clear_colour(0, {value, value, value, value});
 }
 
 void bind(const Pass& pass, const gl::Program& program, std::string_view uniform,
@@ -180,7 +180,7 @@ void BloodGpu::take_surface(const Pass& pass, const BloodMedium& medium, bool em
     if (empty) {
         for (std::size_t i = 0; i < 2; ++i) {
             clear(pass, drops_alone_[i]);
-            clear(pass, marks_target_[i]);
+            clear(pass, marks_target_[i], spill ? 1.0F : 0.0F);
             clear(pass, across_target_[i]);
         }
         clear(pass, ledger_target_);
@@ -363,6 +363,7 @@ void BloodGpu::step(const Pass& pass, const BloodMedium& medium, const DropRange
     const gl::Program& program = use(pass, tools ? Shader::film_tools : Shader::film);
     bind_place(pass, program);
     pass.bind(program, "u_top", "flow_top");
+    program.set("u_one", 1.0F);
     set_medium(program, medium);
     set_tools(pass, program, medium);
     draw_into(pass, film_target_[next], gl::overwrite_state);

@@ -52,6 +52,7 @@ struct BloodState {
     std::uint64_t seam_key = 0;
     std::uint64_t looks = 0;         ///< at the tiles
     std::uint64_t disturbed_at = 0;  ///< the look before which answers are too old
+    std::int64_t looked_at = 0;      ///< step of the last look
     std::size_t tool_count = 0;
     DropRing ring;
     std::vector<DropMeter> meters;

@@ -4,6 +4,7 @@
 uniform sampler2D u_film;
 uniform sampler2D u_right;
 uniform sampler2D u_top;
+uniform float u_one;
 #ifdef TOOLS
 #include "tissue/blood_tools.glsl"
 #endif
@@ -74,8 +75,9 @@ void main() {
 #endif
     change -= removed;
     // The part of the change that the height's own digits do not hold is owed to it: else deep pools would swallow thin films.
+    // The factor 1 keeps compilers from calculating with real numbers here, in which nothing would be owed.
     float height = c + change;
-    float back = height - c;
-    float owed = (c - (height - back)) + (change - back);
+    float back = height * u_one - c;
+    float owed = (c - (height - back) * u_one) + (change - back);
     o_film = vec4(height, owed, film.z + lost / film.w + removed, film.w);
 }

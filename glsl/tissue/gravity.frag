@@ -124,8 +124,20 @@ vec4 face(ivec2 a, ivec2 axis, float kind_a, vec3 origin) {
     if (!u_open || from_a == from_b || kind_a == continued || kind_b == continued) {
         return vec4(0.0);
     }
-    // Over an open border the film goes on as the surface falls just before it.
+    // Over an open border the film goes on as the surface falls just before it. A border that slants through the grid has steps, which a
+    // film that runs along it must not fall off.
     ivec2 cell = from_a ? a : b;
+    float factor;
+    float scale;
+    vec2 flow = downhill(cell, factor, scale);
+    vec2 outward = vec2(0.0);
+    for (int i = 0; i < 9; ++i) {
+        ivec2 way = ivec2(i % 3 - 1, i / 3 - 1);
+        outward += kind(cell + way) == 0.0 ? vec2(way) : vec2(0.0);
+    }
+    if (dot(flow, outward) < 0.3 * length(flow) * length(outward)) {
+        return vec4(0.0);
+    }
     Local l = local(cell);
     float drive = dot(u_down, dot(l.conductance, vec2(axis)) * step_along(cell, axis) + l.skew * step_along(cell, along));
     return from_a == (drive > 0.0) ? vec4(0.0, 0.0, u_strength * drive, share(cell, axis) * texelFetch(u_metric, cell, 0).w)

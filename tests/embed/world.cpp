@@ -140,6 +140,12 @@ Scene World::everything() const {
      "targets": {"source": "painter.main", "blurred": "contrast.capillary"}},
     {"name": "surface", "effect": "mesh.surface", "parameters": {"mesh": "tube.obj"}},
     {"name": "bake", "effect": "tissue.bake", "parameters": {"mesh": {"file": "tube.obj"}, "size": 64}},
+    {"name": "gravity", "effect": "tissue.gravity", "parameters": {"size": 64}},
+    {"name": "spill", "effect": "picture.image", "parameters": {"file": "smoke_a.png", "monochrome": true},
+     "targets": {"image": "tissue.blood_spill"}},
+    {"name": "blood", "effect": "tissue.blood",
+     "parameters": {"mesh": {"file": "tube.obj"}, "size": 64, "wounds": [{"position_mm": [5, 0, 0], "rate_mm3_s": 200}]}},
+    {"name": "account", "effect": "tissue.blood_account"},
     {"name": "organ", "effect": "organ.surface",
      "parameters": {"mesh": {"file": "tube.obj"}, "diffuse_map": "smoke_a.png", "focus": {"focus_mm": 300, "far_mm": 340}}},
     {"name": "membrane", "effect": "organ.surface",
@@ -159,7 +165,7 @@ Scene World::everything() const {
   "targets": {"contrast.capillary": {"scale": 0.5}},
   "outputs": ["final", "contrast.distance_view", "contrast.mask", "contrast.reflux", "contrast.extravasate",
               "alone.cloud", "alone.distance", "depth.main", "painter.main", "host.main", "volume.colour",
-              "volume.slice", "organ.final", "tissue.position"]
+              "volume.slice", "organ.final", "tissue.position", "tissue.blood_account"]
 })json");
 }
 

@@ -100,6 +100,17 @@ struct Builder {
         const int cx = a == Texel::cell ? x : x + dx;
         const int cy = a == Texel::cell ? y : y + dy;
         const std::size_t i = s.index(cx, cy);
+        const glm::dvec2 flow = downhill(cx, cy);
+        glm::dvec2 outer(0.0);
+        for (int n = 0; n < 9; ++n) {
+            const glm::ivec2 way(n % 3 - 1, n / 3 - 1);
+            const Texel there = s.at(cx + way.x, cy + way.y);
+            outer +=
+                there == Texel::nothing || there == Texel::open_gutter ? glm::dvec2(way) : glm::dvec2(0.0);
+        }
+        if (glm::dot(flow, outer) < 0.3 * glm::length(flow) * glm::length(outer)) {
+            return {};
+        }
         const Local l = local(s.metric[i]);
         const double drive = -((dx == 1 ? l.conductance : l.inverse) * slope(s, cx, cy, dx, dy, zed) +
                                l.skew * slope(s, cx, cy, dy, dx, zed));

@@ -62,7 +62,7 @@ json BloodStage::scene() const {
     }
     passes.insert(passes.end(), more.begin(), more.end());
     passes.push_back(pass("blood", "tissue.blood", blood_parameters));
-    passes.push_back(pass("account", "tissue.blood_account"));
+    passes.push_back(pass("account", "tissue.blood_account", {{"state", blood.value("state", "blood")}}));
     json scene =
         scene_of({{"kind", "perspective"}}, passes,
                  {"tissue.blood_height", "tissue.blood_color", "tissue.blood_normal", "tissue.blood_account",
@@ -102,6 +102,7 @@ void BloodStage::spill(const std::function<double(const glm::dvec3&)>& height_mm
 }
 
 const FrameReport& BloodStage::frame(double time_s, const HostValues* values) {
+    time_s_ = time_s;
     return stage_.render(time_s, values);
 }
 

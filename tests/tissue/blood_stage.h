@@ -46,8 +46,8 @@ class BloodStage {
     int size;
     nlohmann::json mesh;     ///< parameters of the mesh; "file" is filled in by surface()
     nlohmann::json gravity;  ///< parameters of tissue.gravity that it has in common with tissue.blood
-    nlohmann::json blood;    ///< further parameters of tissue.blood
-    nlohmann::json more = nlohmann::json::array();  ///< passes before the blood's
+    nlohmann::json blood = nlohmann::json::object();  ///< further parameters of tissue.blood
+    nlohmann::json more = nlohmann::json::array();    ///< passes before the blood's
 
     void surface(std::span<const SurfaceChart> charts, const std::function<glm::dvec3(glm::dvec2)>& place);
     /// Blood that lies there at the start [mm], at each cell's centre in the world.
@@ -59,6 +59,7 @@ class BloodStage {
     const FrameReport& run(double from_s, double to_s, double step_s, const HostValues* values = nullptr);
     const FrameReport& frame(double time_s, const HostValues* values = nullptr);
     [[nodiscard]] Image read(std::string_view target) { return stage_.renderer().read(target); }
+    [[nodiscard]] double time_s() const { return time_s_; }  ///< of the last frame
     [[nodiscard]] BloodAccount account();
     /// The bake as it was drawn, for the reference.
     [[nodiscard]] reference::TissueSurface baked();
@@ -67,6 +68,7 @@ class BloodStage {
   private:
     Stage stage_;
     std::string spill_file_;
+    double time_s_ = 0.0;
 };
 
 }  // namespace viscera::test
