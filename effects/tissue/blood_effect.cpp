@@ -158,7 +158,7 @@ bool BloodEffect::bleeds(std::int64_t first, std::int64_t last) const {
 
 std::size_t BloodEffect::working_tools(std::int64_t step) const {
     const double time = (static_cast<double>(step) + 0.5) / params_.liquid.steps_per_s;
-    return static_cast<std::size_t>(std::ranges::count_if(tools_, [&](const ToolParams& tool) {
+    return static_cast<std::size_t>(std::ranges::count_if(tools_, [&](const CleanerParams& tool) {
         return tool.rate > 0.0 && time >= tool.start_s && time < tool.stop_s;
     }));
 }
@@ -196,7 +196,7 @@ void BloodEffect::set_tools(std::int64_t step) {
     medium_.tools.clear();
     medium_.tool_powers.clear();
     const double time = (static_cast<double>(step) + 0.5) / params_.liquid.steps_per_s;
-    for (const ToolParams& tool : tools_) {
+    for (const CleanerParams& tool : tools_) {
         if (tool.rate > 0.0 && time >= tool.start_s && time < tool.stop_s) {
             medium_.tools.emplace_back(glm::vec3(tool.position_mm), static_cast<float>(tool.radius_mm));
             medium_.tool_powers.push_back(tool_power(tool, 1.0 / params_.liquid.steps_per_s));

@@ -51,7 +51,7 @@ class BloodEffect final : public Effect {
     std::int64_t target_step_ = 0;
     std::vector<WoundParams> wounds_;
     std::vector<Place> places_;
-    std::vector<ToolParams> tools_;
+    std::vector<CleanerParams> tools_;
     std::vector<DropSpawn> spawns_;
     BloodMedium medium_;
 };

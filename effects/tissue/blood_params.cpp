@@ -9,7 +9,7 @@ std::span<const std::string_view> choice_names(BleedingKind) {
     return names;
 }
 
-std::span<const std::string_view> choice_names(ToolKind) {
+std::span<const std::string_view> choice_names(CleanerKind) {
     static constexpr std::array<std::string_view, 2> names{"suction", "rinse"};
     return names;
 }
@@ -49,7 +49,7 @@ void WoundParams::visit(ParamVisitor& v) {
     v.field({.name = "stop_s", .doc = "Until this time.", .unit = "s"}, stop_s);
 }
 
-void ToolParams::visit(ParamVisitor& v) {
+void CleanerParams::visit(ParamVisitor& v) {
     v.field({.name = "kind", .doc = "What it does."}, kind);
     v.field({.name = "position_mm", .doc = "Of its tip, in the world.", .unit = "mm", .required = true},
             position_mm);

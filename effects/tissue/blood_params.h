@@ -36,12 +36,12 @@ struct WoundParams {
     void visit(ParamVisitor& v);
 };
 
-enum class ToolKind { suction, rinse };
-[[nodiscard]] std::span<const std::string_view> choice_names(ToolKind);
+enum class CleanerKind { suction, rinse };
+[[nodiscard]] std::span<const std::string_view> choice_names(CleanerKind);
 
 /// A tool that takes blood away.
-struct ToolParams {
-    ToolKind kind = ToolKind::suction;
+struct CleanerParams {
+    CleanerKind kind = CleanerKind::suction;
     glm::dvec3 position_mm{0.0};
     double radius_mm = 5.0;
     double rate = 500.0;
@@ -87,7 +87,7 @@ struct BloodParams {
     LiquidParams liquid;
     BloodLookParams look;
     std::vector<WoundParams> wounds;
-    std::vector<ToolParams> tools;
+    std::vector<CleanerParams> tools;
     std::string host_emitters = "tissue.blood_emitters";
     std::string host_suction = "tissue.suction";
     std::string host_rinse = "tissue.rinse";

@@ -44,7 +44,7 @@ bool usable(const WoundParams& w, Log& log) {
     return false;
 }
 
-bool usable(const ToolParams& t, Log& log) {
+bool usable(const CleanerParams& t, Log& log) {
     if (finite(t.position_mm) && std::isfinite(t.radius_mm) && t.radius_mm > 0.0 && std::isfinite(t.rate)) {
         return true;
     }
@@ -84,9 +84,9 @@ void collect_wounds(const BloodParams& params, const HostValues* values, Log& lo
 }
 
 void collect_tools(const BloodParams& params, const HostValues* values, Log& log,
-                   std::vector<ToolParams>& tools) {
+                   std::vector<CleanerParams>& tools) {
     tools.clear();
-    const auto add = [&](const ToolParams& tool) {
+    const auto add = [&](const CleanerParams& tool) {
         if (!usable(tool, log)) {
             return;
         }
@@ -96,10 +96,10 @@ void collect_tools(const BloodParams& params, const HostValues* values, Log& log
         }
         tools.push_back(tool);
     };
-    for (const ToolParams& tool : params.tools) {
+    for (const CleanerParams& tool : params.tools) {
         add(tool);
     }
-    const auto take = [&](ToolKind kind) {
+    const auto take = [&](CleanerKind kind) {
         return [&add, kind](std::span<const float> v) {
             add({.kind = kind,
                  .position_mm = {v[0], v[1], v[2]},
@@ -107,8 +107,8 @@ void collect_tools(const BloodParams& params, const HostValues* values, Log& log
                  .rate = std::max(v[4], 0.0F)});
         };
     };
-    each_record(values, params.host_suction, floats_per_tool, log, take(ToolKind::suction));
-    each_record(values, params.host_rinse, floats_per_tool, log, take(ToolKind::rinse));
+    each_record(values, params.host_suction, floats_per_tool, log, take(CleanerKind::suction));
+    each_record(values, params.host_rinse, floats_per_tool, log, take(CleanerKind::rinse));
 }
 
 double pulse_of(const WoundParams& wound, double time_s) {
@@ -118,8 +118,8 @@ double pulse_of(const WoundParams& wound, double time_s) {
     return 1.0 + wound.pulse_depth * std::sin(2.0 * std::numbers::pi * wound.pulse_hz * time_s);
 }
 
-glm::vec2 tool_power(const ToolParams& tool, double dt_s) {
-    if (tool.kind == ToolKind::rinse) {
+glm::vec2 tool_power(const CleanerParams& tool, double dt_s) {
+    if (tool.kind == CleanerKind::rinse) {
         return {0.0F, static_cast<float>(-std::expm1(-tool.rate * dt_s))};
     }
     // The shader's profile 1 - d^2/r^2 has the volume pi r^2 / 2 per unit of height.

@@ -26,13 +26,13 @@ inline constexpr std::size_t floats_per_tool = 5;
 void collect_wounds(const BloodParams& params, const HostValues* values, Log& log,
                     std::vector<WoundParams>& wounds);
 void collect_tools(const BloodParams& params, const HostValues* values, Log& log,
-                   std::vector<ToolParams>& tools);
+                   std::vector<CleanerParams>& tools);
 
 /// Share of the mean flow of a wound at a time [s].
 [[nodiscard]] double pulse_of(const WoundParams& wound, double time_s);
 
 /// What a tool does in one step, as the shaders want it: taken [mm], share rinsed away.
-[[nodiscard]] glm::vec2 tool_power(const ToolParams& tool, double dt_s);
+[[nodiscard]] glm::vec2 tool_power(const CleanerParams& tool, double dt_s);
 
 /// Portions blood into drops: what has flowed but does not yet fill a drop is kept for later.
 class DropMeter {

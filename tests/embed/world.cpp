@@ -162,7 +162,7 @@ Scene World::everything() const {
        "transfer_function": {"points": [{"value": 10, "opacity": 0}, {"value": 200, "opacity": 0.05}]}}},
     {"name": "composite", "effect": "contrast.composite"}
   ],
-  "targets": {"contrast.capillary": {"scale": 0.5}},
+  "targets": {"contrast.capillary": {"scale": 0.5}, "tissue.blood_spill": {"size": [64, 64]}},
   "outputs": ["final", "contrast.distance_view", "contrast.mask", "contrast.reflux", "contrast.extravasate",
               "alone.cloud", "alone.distance", "depth.main", "painter.main", "host.main", "volume.colour",
               "volume.slice", "organ.final", "tissue.position", "tissue.blood_account"]
