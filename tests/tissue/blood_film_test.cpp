@@ -112,7 +112,8 @@ TEST(BloodFilm, FallsAsAThinFilmDoes) {
             time, found.front, front_at(time), 100.0 * (found.front / front_at(time) - 1.0), 100.0 * found.l1,
             found.volume / (section_mm2 * side_mm) - 1.0);
         EXPECT_NEAR(found.front / front_at(time), 1.0, 0.01);
-        EXPECT_LT(found.l1, 0.025);
+        // Of first order: the front is smeared over some of the 140 cells that it has passed.
+        EXPECT_LT(found.l1, 0.03);
     }
     EXPECT_TRUE(stage.stage().complaints().empty());
 }
