@@ -9,7 +9,6 @@
 #include "engine/core/hash.h"
 #include "engine/core/log.h"
 #include "engine/gl/texture.h"
-#include "engine/io/packed.h"
 #include "engine/runtime/pass.h"
 
 namespace viscera::tissue {
@@ -27,20 +26,6 @@ constexpr std::array<Feature, 3> features{{{"normal", "NORMAL"}, {"metric", "MET
 
 // Beyond this a float cannot count triangles or vertices.
 constexpr std::size_t most_counted = std::size_t{1} << 24U;
-
-/// Named in the disk cache; another number when maps are made in another way.
-constexpr std::string_view cached_kind = "texel-map-1";
-
-bool read_map(const io::DiskCache& cache, std::uint64_t key, const glm::ivec2& size, TexelMap& map) {
-    const auto bytes = cache.load(cached_kind, key);
-    if (!bytes) {
-        return false;
-    }
-    io::Unpacker unpacker(*bytes);
-    unpacker.read(map.faults).read(map.size).read(map.texels);
-    return unpacker.complete() && map.size == size &&
-           map.texels.size() == static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
-}
 
 std::size_t rows_for(std::size_t count) {
     return std::max<std::size_t>((count + row_length - 1) / row_length, 1);
@@ -129,7 +114,12 @@ Work BakeEffect::prepare(Prepare& prepare) {
         prepare.log().fault("tissue.singular", "the mesh's placement is singular; nothing is baked");
         return Work::idle("the mesh's placement is singular");
     }
-    if (!map_ || map_->size != prepare.size("position")) {
+    const glm::ivec2 size = prepare.size("position");
+    if (size.x != size.y) {
+        prepare.log().fault("tissue.no_square", "a bake's targets are no squares; nothing is baked");
+        return Work::idle("its targets are no squares");
+    }
+    if (!map_ || map_->size != size.x) {
         find_map(prepare);
     }
     wanted_ = 0;
@@ -142,26 +132,12 @@ Work BakeEffect::prepare(Prepare& prepare) {
 
 /// From what other passes or an earlier run have found, or anew.
 void BakeEffect::find_map(Prepare& prepare) {
-    const glm::ivec2 size = prepare.size("position");
+    const int size = prepare.size("position").x;
     const std::string file = params_.mesh.file.path.string();
     if (mesh_->data().triangle_count() >= most_counted || mesh_->data().positions.size() >= most_counted) {
         throw Error(ErrorCode::limit, file, "has more triangles or vertices than can be baked (16,777,216)");
     }
-    const std::uint64_t key = Hash().add(mesh_->key()).add(size).add(gutter_texels).value();
-    map_ = prepare.assets().shared<TexelMap>(key, [&] {
-        auto map = std::make_shared<TexelMap>();
-        const io::DiskCache& cache = prepare.assets().disk_cache();
-        if (!read_map(cache, key, size, *map)) {
-            *map = make_texel_map({.positions = mesh_->file_positions(),
-                                   .uvs = mesh_->data().uvs,
-                                   .indices = mesh_->data().indices,
-                                   .place = mesh_->places()},
-                                  size, prepare.assets().progress("finding the texels of " + file));
-            cache.store(cached_kind, key,
-                        io::Packer().add(map->faults).add(map->size).add(map->texels).bytes());
-        }
-        return map;
-    });
+    map_ = shared_texel_map(prepare.assets(), *mesh_, size, file);
     const auto say = [&](std::string_view key, std::uint64_t count, const std::string& what) {
         if (count > 0) {
             prepare.log().fault(key, file + ": " + std::to_string(count) + " " + what, count);
@@ -223,8 +199,8 @@ void BakeEffect::upload(const Pass& pass) {
     }
     if (gpu_->map_of != map_) {
         gpu_->map_of = map_;
-        gpu_->map = gl::Texture::make_2d(pass.gl(), map_->size.x, map_->size.y, PixelFormat::rgba32f,
-                                         "texels of a bake");
+        gpu_->map =
+            gl::Texture::make_2d(pass.gl(), map_->size, map_->size, PixelFormat::rgba32f, "texels of a bake");
         gpu_->map->upload(std::as_bytes(std::span(map_->texels)));
     }
 }
@@ -235,7 +211,7 @@ void BakeEffect::draw(const Pass& pass) {
     pass.bind(program, "u_map", *gpu_->map, gl::Filter::nearest);
     pass.bind(program, "u_vertices", *gpu_->vertices, gl::Filter::nearest);
     pass.bind(program, "u_triangles", *gpu_->triangles, gl::Filter::nearest);
-    program.set("u_size", glm::vec2(map_->size));
+    program.set("u_size", static_cast<float>(map_->size));
     pass.draw_fullscreen();
 }
 

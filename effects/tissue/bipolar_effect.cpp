@@ -123,12 +123,7 @@ void BipolarEffect::find_surface(Prepare& prepare) {
         to_world_ = placement_matrix(params_.mesh.placement, mesh_->centre());
         triangles_ =
             std::make_unique<HeldTriangles>(mesh_->data(), mesh_->places(), params_.max_uv_perimeter);
-        // The bake asks for the same map by the same key.
-        map_ = prepare.assets().shared<TexelMap>(Hash().add(mesh_->key()).add(size).value(), [&] {
-            return std::make_shared<TexelMap>(make_texel_map(
-                mesh_->data(), mesh_->places(), size,
-                prepare.assets().progress("finding the texels of " + params_.mesh.file.path.string())));
-        });
+        map_ = shared_texel_map(prepare.assets(), *mesh_, size, params_.mesh.file.path.string());
         tiles_ = std::make_unique<TileTree>(map_);
         placed_shape_ = 0;
     }

@@ -146,13 +146,8 @@ bool CoagulateEffect::find_tiles(Prepare& prepare) {
     }
     mesh_->move(prepare.frame().values, params_.mesh->host_positions, prepare.log());
     if (!tiles_ || tiles_->size() != size) {
-        // The bake asks for the same map by the same key.
         tiles_ = std::make_unique<TileTree>(
-            prepare.assets().shared<TexelMap>(Hash().add(mesh_->key()).add(size).value(), [&] {
-                return std::make_shared<TexelMap>(make_texel_map(
-                    mesh_->data(), mesh_->places(), size,
-                    prepare.assets().progress("finding the texels of " + params_.mesh->file.path.string())));
-            }));
+            shared_texel_map(prepare.assets(), *mesh_, size, params_.mesh->file.path.string()));
         placed_shape_ = 0;
     }
     if (placed_shape_ != mesh_->shape_key()) {

@@ -6,20 +6,38 @@
 
 #include "effects/tissue/surface_walk.h"
 #include "engine/core/error.h"
+#include "engine/core/hash.h"
 #include "engine/core/mesh_adjacency.h"
 #include "engine/core/texel_raster.h"
+#include "engine/io/packed.h"
+#include "engine/runtime/assets.h"
+#include "engine/runtime/surface_mesh.h"
 
 namespace viscera::tissue {
 namespace {
 
 constexpr std::uint32_t none = MeshAdjacency::none;
 
+/// Named in the disk cache; another number when maps are made in another way.
+constexpr std::string_view cached_kind = "texel-map-1";
+
+bool read_map(const io::DiskCache& cache, std::uint64_t key, int size, TexelMap& map) {
+    const auto bytes = cache.load(cached_kind, key);
+    if (!bytes) {
+        return false;
+    }
+    io::Unpacker unpacker(*bytes);
+    unpacker.read(map.faults).read(map.size).read(map.texels);
+    const auto side = static_cast<std::size_t>(size);
+    return unpacker.complete() && map.size == size && map.texels.size() == side * side;
+}
+
 class MapMaker {
   public:
-    MapMaker(const TexelSurface& mesh, const glm::ivec2& size)
+    MapMaker(const TexelSurface& mesh, int size)
         : mesh_(mesh), adjacency_(find_adjacency(mesh.indices, mesh.place)) {
         map_.size = size;
-        map_.texels.resize(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y));
+        map_.texels.resize(static_cast<std::size_t>(size) * static_cast<std::size_t>(size));
         map_.faults.non_manifold_edges = adjacency_.non_manifold_edges;
     }
 
@@ -54,14 +72,15 @@ class MapMaker {
 
     /// Where a half-edge begins in the texture [texels].
     [[nodiscard]] glm::dvec2 at(std::uint32_t half_edge) const {
-        return glm::dvec2(map_.size) * glm::dvec2(mesh_.uvs[mesh_.indices[half_edge]]);
+        return static_cast<double>(map_.size) * glm::dvec2(mesh_.uvs[mesh_.indices[half_edge]]);
     }
     [[nodiscard]] double signed_area2(std::uint32_t t) const {
         return cross2(at(3 * t + 1) - at(3 * t), at(3 * t + 2) - at(3 * t));
     }
     [[nodiscard]] std::size_t texel_at(int x, int y) const {
-        const auto wrap = [](int i, int n) { return static_cast<std::size_t>((i % n + n) % n); };
-        return wrap(y, map_.size.y) * static_cast<std::size_t>(map_.size.x) + wrap(x, map_.size.x);
+        const int n = map_.size;
+        const auto wrap = [n](int i) { return static_cast<std::size_t>((i % n + n) % n); };
+        return wrap(y) * static_cast<std::size_t>(n) + wrap(x);
     }
 
     void fill(std::uint32_t t) {
@@ -71,7 +90,7 @@ class MapMaker {
         map_.faults.mirrored_triangles += area2 < 0.0 ? 1 : 0;
         constexpr int most_textures = 4;
         const bool seen =
-            for_each_texel(corner, most_textures * std::max(map_.size.x, map_.size.y),
+            for_each_texel(corner, most_textures * map_.size,
                            [&](int x, int y, double b1, double b2) { set(texel_at(x, y), t, b1, b2); });
         map_.faults.huge_triangles += seen ? 0 : 1;
     }
@@ -133,7 +152,7 @@ class MapMaker {
         const glm::dvec2 edge = b - a;
         const double length2 = glm::dot(edge, edge);
         // A triangle that fill() left out has no gutter either.
-        if (!(length2 > 0.0) || std::sqrt(length2) > 6.0 * std::max(map_.size.x, map_.size.y)) {
+        if (!(length2 > 0.0) || std::sqrt(length2) > 6.0 * map_.size) {
             return;
         }
         const double turn = signed_area2(half_edge / 3) > 0.0 ? 1.0 : -1.0;
@@ -144,11 +163,11 @@ class MapMaker {
         const auto first = [&](double x) {
             return static_cast<int>(std::ceil(repeats ? x : std::max(x, 0.0)));
         };
-        const auto last = [&](double x, int n) {
-            return static_cast<int>(std::floor(repeats ? x : std::min<double>(x, n))) - 1;
+        const auto last = [&](double x) {
+            return static_cast<int>(std::floor(repeats ? x : std::min<double>(x, map_.size))) - 1;
         };
-        for (int y = first(low.y); y <= last(high.y, map_.size.y); ++y) {
-            for (int x = first(low.x); x <= last(high.x, map_.size.x); ++x) {
+        for (int y = first(low.y); y <= last(high.y); ++y) {
+            for (int x = first(low.x); x <= last(high.x); ++x) {
                 const std::size_t index = texel_at(x, y);
                 if (map_.texels[index].owner != 0.0F) {
                     continue;
@@ -218,8 +237,27 @@ class MapMaker {
 
 }  // namespace
 
-TexelMap make_texel_map(const TexelSurface& surface, const glm::ivec2& size, const Progress& progress) {
+TexelMap make_texel_map(const TexelSurface& surface, int size, const Progress& progress) {
     return MapMaker(surface, size).make(progress);
+}
+
+std::shared_ptr<const TexelMap> shared_texel_map(Assets& assets, const SurfaceMesh& mesh, int size,
+                                                 const std::string& where) {
+    const std::uint64_t key = Hash().add(mesh.key()).add(size).add(gutter_texels).value();
+    return assets.shared<TexelMap>(key, [&] {
+        auto map = std::make_shared<TexelMap>();
+        const io::DiskCache& cache = assets.disk_cache();
+        if (!read_map(cache, key, size, *map)) {
+            *map = make_texel_map({.positions = mesh.file_positions(),
+                                   .uvs = mesh.data().uvs,
+                                   .indices = mesh.data().indices,
+                                   .place = mesh.places()},
+                                  size, assets.progress("finding the texels of " + where));
+            cache.store(cached_kind, key,
+                        io::Packer().add(map->faults).add(map->size).add(map->texels).bytes());
+        }
+        return map;
+    });
 }
 
 }  // namespace viscera::tissue

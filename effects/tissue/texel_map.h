@@ -1,12 +1,19 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <glm/glm.hpp>
 
 #include "engine/core/progress.h"
+
+namespace viscera {
+class Assets;
+class SurfaceMesh;
+}  // namespace viscera
 
 namespace viscera::tissue {
 
@@ -34,8 +41,8 @@ struct TexelMapFaults {
 };
 
 struct TexelMap {
-    glm::ivec2 size{0};              ///< [texels]
-    std::vector<TexelPoint> texels;  ///< size.x * size.y, the bottom row first
+    int size = 0;                    ///< texels along each side
+    std::vector<TexelPoint> texels;  ///< size * size, the bottom row first
     TexelMapFaults faults;
 };
 
@@ -50,7 +57,11 @@ struct TexelSurface {
 /// Every texel whose centre lies in a triangle, and gutter_texels around each chart, unless they lie in
 /// another one. Texture coordinates beyond [0, 1] repeat. Triangle numbers must be below 2^24. Throws
 /// Error(usage) when cancelled.
-[[nodiscard]] TexelMap make_texel_map(const TexelSurface& surface, const glm::ivec2& size,
-                                      const Progress& progress = {});
+[[nodiscard]] TexelMap make_texel_map(const TexelSurface& surface, int size, const Progress& progress = {});
+
+/// Of a mesh, found once for all passes that paint on it at this size, or kept in the disk cache by an
+/// earlier run. `where` names the mesh for whoever waits.
+[[nodiscard]] std::shared_ptr<const TexelMap> shared_texel_map(Assets& assets, const SurfaceMesh& mesh,
+                                                               int size, const std::string& where);
 
 }  // namespace viscera::tissue

@@ -5,7 +5,7 @@
 uniform sampler2D u_map;
 uniform sampler2D u_vertices;   // two texels per vertex: world position [mm] and u, world normal and v
 uniform sampler2D u_triangles;  // three vertices
-uniform vec2 u_size;            // [texels]
+uniform float u_size;           // texels along each side
 layout(location = 0) out vec4 o_position;
 #ifdef NORMAL
 layout(location = 1) out vec4 o_normal;

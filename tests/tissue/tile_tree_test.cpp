@@ -37,8 +37,7 @@ TEST(TileTree, EveryTexelInReachLiesInATileThatIsFound) {
         tissue::TexelMap map;
         const auto mesh = SurfaceMesh::load(assets, {.file = {plane.write("tiles")}});
         constexpr int size = 100;  // the last tiles are cut off
-        const auto texels =
-            std::make_shared<tissue::TexelMap>(tissue::make_texel_map(mesh->data(), mesh->places(), size));
+        const auto texels = tissue::shared_texel_map(assets, *mesh, size, "tiles");
         // Bent, so that boxes are not flat.
         std::vector<glm::vec3> bent = mesh->data().positions;
         for (glm::vec3& p : bent) {
