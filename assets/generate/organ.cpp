@@ -1,6 +1,7 @@
 #include <nlohmann/json.hpp>
 
 #include "assets/generate/generate.h"
+#include "assets/generate/hook.h"
 #include "assets/generate/organ_field.h"
 #include "assets/generate/organ_mesh.h"
 #include "assets/generate/organ_paint.h"
@@ -52,6 +53,7 @@ void generate_organs(const std::filesystem::path& folder, std::uint64_t seed, in
     picture("organ_hint.png", size / 2, true, [&](const PaintPoint& p) { return paint.hint(p); });
     picture("organ_cut.png", size, true, [&](const PaintPoint& p) { return paint.cut(p); });
 
+    write_glb(make_hook(), folder / "meshes" / "hook.glb");
     const MeshData abdomen = mesh_abdomen(seed, abdomen_cells);
     write_glb(abdomen, folder / "meshes" / "abdomen.glb");
     const int wall = abdomen_pixels / coarser;

@@ -26,6 +26,7 @@ void TimelineKey::visit(ParamVisitor& v) {
              .doc = "Mesh whose vertices stand for the numbers, three a vertex: glTF, GLB, STL, OBJ, PLY or "
                     "VTP."},
             mesh);
+    v.field({.name = "move_mm", .doc = "Moves the mesh.", .unit = "mm", .min = -1e9, .max = 1e9}, move_mm);
 }
 
 void TimelineTrack::visit(ParamVisitor& v) {

@@ -21,6 +21,7 @@ struct TimelineKey {
     double time_s = 0.0;
     std::vector<double> values;  ///< none, and no mesh: there is no such value from here on
     AssetPath mesh;              ///< its positions [mm], three numbers a vertex, stand for `values`
+    glm::dvec3 move_mm{0.0};     ///< added to the mesh's positions
 
     void visit(ParamVisitor& v);
 };

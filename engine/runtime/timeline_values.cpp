@@ -18,7 +18,8 @@ std::vector<float> numbers_of(const TimelineKey& key, Log& log) {
     }
     const MeshData mesh = io::merge(io::load_meshes(key.mesh.path, {}, log));
     numbers.reserve(3 * mesh.positions.size());
-    for (const glm::vec3& p : mesh.positions) {
+    for (const glm::vec3& position : mesh.positions) {
+        const glm::vec3 p(glm::dvec3(position) + key.move_mm);
         numbers.insert(numbers.end(), {p.x, p.y, p.z});
     }
     return numbers;

@@ -62,15 +62,15 @@ TEST_P(TimelineFrames, VerticesOfMeshesRunIntoEachOther) {
         return AssetPath{file};
     };
     Scene scene = make_scene({{"shows"}}, {"x"});
-    scene.timeline = {
-        {.value = "x",
-         .interpolation = Interpolation::linear,
-         .period_s = 0.0,
-         .keys = {{0.0, {}, write("timeline_a.obj", "1")}, {1.0, {}, write("timeline_b.obj", "3")}}}};
+    scene.timeline = {{.value = "x",
+                       .interpolation = Interpolation::linear,
+                       .period_s = 0.0,
+                       .keys = {{0.0, {}, write("timeline_a.obj", "1")},
+                                {1.0, {}, write("timeline_b.obj", "3"), {4.0, 0.0, 0.0}}}}};
     renderer().set_scene(scene);
     EXPECT_EQ(shown_at(0.0), 1.0F);
-    EXPECT_EQ(shown_at(0.25), 1.5F);
-    EXPECT_EQ(shown_at(7.0), 3.0F);
+    EXPECT_EQ(shown_at(0.25), 2.5F);
+    EXPECT_EQ(shown_at(7.0), 7.0F);
 }
 
 TEST_P(TimelineFrames, SaysWhetherFramesBuildOnEachOther) {
