@@ -19,9 +19,8 @@ constexpr std::array<std::string_view, 2> metric_names{"world", "uv"};
 // Bits of a program's index.
 constexpr std::size_t in_uv = 1;
 constexpr std::size_t long_ways = 2;
+constexpr std::size_t in_steps = 4;
 
-// llvmpipe ends a loop silently after 65,535 rounds.
-constexpr std::size_t most_contacts = 60000;
 // No place is farther than this from anything: the square of it is a float.
 constexpr double no_limit = 1e18;
 // Tiles are asked for a little farther than a contact reaches, since the shader measures in floats.
@@ -83,13 +82,16 @@ void CoagulateParams::visit(ParamVisitor& v) {
 }
 
 CoagulateEffect::CoagulateEffect() {
-    for (std::size_t variant = 0; variant < 4; ++variant) {
+    for (std::size_t variant = 0; variant < 8; ++variant) {
         ProgramDesc program{"tissue/coagulate.vert", "tissue/coagulate.frag", {}};
         if ((variant & in_uv) != 0) {
             program.defines.emplace_back("METRIC_UV");
         }
         if ((variant & long_ways) != 0) {
             program.defines.emplace_back("LONG_WAYS");
+        }
+        if ((variant & in_steps) != 0) {
+            program.defines.emplace_back("IN_STEPS");
         }
         programs_.push_back(std::move(program));
     }
@@ -210,14 +212,10 @@ Work CoagulateEffect::prepare(Prepare& prepare) {
                        .begin_s = last_time_s_.value_or(time),
                        .end_s = time});
     if (contacts_.unusable() > 0) {
-        prepare.log().fault("tissue.contact",
-                            "contacts that are not finite or of an unknown action are left out",
-                            contacts_.unusable());
-    }
-    if (contacts_.contacts().size() > most_contacts) {
-        throw Error(ErrorCode::limit, "tissue.coagulate",
-                    std::to_string(contacts_.contacts().size()) + " contacts; at most " +
-                        std::to_string(most_contacts) + " are possible in one frame");
+        prepare.log().fault(
+            "tissue.contact",
+            "contacts that are not finite, of an unknown action, or beyond 60,000 are left out",
+            contacts_.unusable());
     }
     find_limit(values_);
     const bool there = params_.metric == Metric::uv || prepare.has("position");
@@ -341,7 +339,8 @@ void CoagulateEffect::pack_contacts() {
         const glm::dvec3 direction = length > 0.0 ? way / length : glm::dvec3(1.0, 0.0, 0.0);
         packed_.emplace_back(glm::vec3(0.5 * (contact.from + contact.to)), contact.dose);
         packed_.emplace_back(glm::vec3(direction), 0.5 * length);
-        packed_.emplace_back(1.0 / contact.sigma, contact.reach * contact.reach, contact.action, 0.0F);
+        packed_.emplace_back(1.0 / contact.sigma, contact.reach * contact.reach, contact.action,
+                             contact.step);
     }
 }
 
@@ -350,7 +349,8 @@ void CoagulateEffect::draw(const Pass& pass) {
         return glm::distance(contact.from, contact.to) > contact.sigma;
     });
     const gl::Program& program =
-        pass.use((params_.metric == Metric::uv ? in_uv : 0) | (has_long_ways ? long_ways : 0));
+        pass.use((params_.metric == Metric::uv ? in_uv : 0) | (has_long_ways ? long_ways : 0) |
+                 (contacts_.has_steps() ? in_steps : 0));
     gpu_->tiles.upload(pass.gl(), drawn_tiles_, "tiles with contacts");
     gpu_->list.upload(pass.gl(), list_, "contacts of tiles");
     gpu_->contacts.upload(pass.gl(), packed_, "contacts");

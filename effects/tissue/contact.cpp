@@ -22,7 +22,8 @@ bool finite(const glm::dvec3& p) {
 
 /// Where a contact stands in the order that sums are formed in.
 auto rank(const Contact& c) {
-    return std::tuple(c.action, c.from.x, c.from.y, c.from.z, c.to.x, c.to.y, c.to.z, c.dose, c.sigma);
+    return std::tuple(c.step, c.action, c.from.x, c.from.y, c.from.z, c.to.x, c.to.y, c.to.z, c.dose,
+                      c.sigma);
 }
 
 /// What one contact of a host's array does; none when it cannot be used.
@@ -63,7 +64,8 @@ double contact_reach(double rate, double sigma) {
     return ratio > 1.0 ? sigma * std::sqrt(2.0 * std::log(ratio)) : 0.0;
 }
 
-void ContactList::add(const Contact& contact, double power, double seconds, Gain gain) {
+void ContactList::add(const Contact& contact, double power, Gain gain) {
+    const double seconds = contact.end_s - contact.begin_s;
     // Written so that NaN is left out.
     if (!(power > 0.0 && seconds > 0.0 && contact.sigma > smallest_sigma)) {
         return;
@@ -88,8 +90,13 @@ void ContactList::add_scene(const ContactParams& params, const Settings& setting
     const auto place = [&](double time) {
         return params.from_mm + way * ((time - params.begin_s) / (params.end_s - params.begin_s));
     };
-    add({.from = place(begin), .to = place(end), .sigma = params.sigma_mm, .action = params.action},
-        params.power, end - begin, settings.gain);
+    add({.from = place(begin),
+         .to = place(end),
+         .sigma = params.sigma_mm,
+         .action = params.action,
+         .begin_s = begin,
+         .end_s = end},
+        params.power, settings.gain);
 }
 
 void ContactList::add_host(const HostValues& values, const Settings& settings) {
@@ -103,7 +110,8 @@ void ContactList::add_host(const HostValues& values, const Settings& settings) {
     unusable_ += given->values.size() % floats_per_contact != 0 ? 1 : 0;
     for (std::size_t i = 0; i < count; ++i) {
         const auto f = std::span(given->values).subspan(i * floats_per_contact, floats_per_contact);
-        Contact contact{.to = {f[0], f[1], f[2]}, .sigma = f[4]};
+        Contact contact{
+            .to = {f[0], f[1], f[2]}, .sigma = f[4], .begin_s = settings.begin_s, .end_s = settings.end_s};
         const std::optional<ContactAction> action = action_of(f[5], f[3]);
         if (!action || !finite(contact.to) || !std::isfinite(f[3]) || !std::isfinite(f[4])) {
             ++unusable_;
@@ -120,7 +128,7 @@ void ContactList::add_host(const HostValues& values, const Settings& settings) {
                    glm::distance(last_[i].at, contact.to) <= settings.max_speed * seconds) {
             contact.from = last_[i].at;
         }
-        add(contact, power, seconds, settings.gain);
+        add(contact, power, settings.gain);
     }
 }
 
@@ -134,7 +142,75 @@ void ContactList::collect(std::span<const ContactParams> scene, const HostValues
     if (values != nullptr) {
         add_host(*values, settings);
     }
+    if (contacts_.size() > most_contacts) {
+        unusable_ += contacts_.size() - most_contacts;
+        contacts_.resize(most_contacts);
+    }
+    if (hang_together()) {
+        split(settings);
+    }
     std::ranges::sort(contacts_, {}, rank);
+}
+
+/// Whether two contacts that move or act differently may reach one place. Of many contacts only that some
+/// move or act differently is looked at.
+bool ContactList::hang_together() const {
+    constexpr std::size_t most_compared = 256;
+    const auto moves = [](const Contact& c) { return c.from != c.to; };
+    const auto differ = [&](const Contact& a, const Contact& b) {
+        return a.action != b.action || moves(a) || moves(b) || a.begin_s != b.begin_s || a.end_s != b.end_s;
+    };
+    if (contacts_.size() > most_compared) {
+        return std::ranges::any_of(contacts_, [&](const Contact& c) { return differ(c, contacts_.front()); });
+    }
+    for (std::size_t i = 0; i < contacts_.size(); ++i) {
+        for (std::size_t j = 0; j < i; ++j) {
+            const Contact& a = contacts_[i];
+            const Contact& b = contacts_[j];
+            const double apart = glm::distance(0.5 * (a.from + a.to), 0.5 * (b.from + b.to));
+            const double reached =
+                a.reach + b.reach + 0.5 * (glm::distance(a.from, a.to) + glm::distance(b.from, b.to));
+            if (differ(a, b) && !(apart > reached)) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+/// Into steps of the interval, each contact for the part of a step in which it acts.
+void ContactList::split(const Settings& settings) {
+    constexpr double steps_per_second = 240.0;
+    constexpr double longest_in_steps_s = 0.25;
+    const double seconds = settings.end_s - settings.begin_s;
+    // A length that is a whole number of steps but for rounding has no further one.
+    double steps = std::ceil(std::min(seconds, longest_in_steps_s) * steps_per_second - 1e-6);
+    steps = std::min(steps, std::floor(static_cast<double>(most_contacts / contacts_.size())));
+    if (!(steps > 1.0)) {
+        return;
+    }
+    whole_.swap(contacts_);
+    contacts_.clear();
+    for (int s = 0; s < static_cast<int>(steps); ++s) {
+        const double from_s = settings.begin_s + seconds * (s / steps);
+        const double to_s = settings.begin_s + seconds * ((s + 1) / steps);
+        for (const Contact& contact : whole_) {
+            Contact part = contact;
+            part.begin_s = std::max(from_s, contact.begin_s);
+            part.end_s = std::min(to_s, contact.end_s);
+            if (!(part.begin_s < part.end_s)) {
+                continue;
+            }
+            const double length = contact.end_s - contact.begin_s;
+            const double a = (part.begin_s - contact.begin_s) / length;
+            const double b = (part.end_s - contact.begin_s) / length;
+            part.from = glm::mix(contact.from, contact.to, a);
+            part.to = glm::mix(contact.from, contact.to, b);
+            part.dose = contact.dose * (b - a);
+            part.step = s;
+            contacts_.push_back(part);
+        }
+    }
 }
 
 void ContactList::keep_places(const HostValues* values) {

@@ -39,6 +39,9 @@ struct Contact {
     double sigma = 0.0;  ///< of the Gaussian, in the unit of the places
     double reach = 0.0;  ///< beyond this from the way nothing is added
     ContactAction action = ContactAction::coagulate;
+    double begin_s = 0.0;  ///< when it acts
+    double end_s = 0.0;
+    int step = 0;  ///< contacts of one step act at once, steps one after the other
 };
 
 /// How the power of a contact is meant.
@@ -69,6 +72,10 @@ class ContactList {
         double begin_s = 0.0;
         double end_s = 0.0;
     };
+    /// Contacts in one list at most: glsl/tissue/coagulate.frag goes through them in one loop, and llvmpipe
+    /// ends loops silently after 65,535 rounds. Beyond it they are cut off and counted as unusable.
+    static constexpr std::size_t most_contacts = 60000;
+
     /// All that act in the interval, in an order that does not hang on the order they are given in.
     /// Contact i of a frame goes on from contact i of the frame before, unless that one was off, did
     /// something else, or the host tells where it was. Allocates nothing once every count has occurred.
@@ -78,7 +85,11 @@ class ContactList {
     /// Contacts of the next frame begin where they are.
     void forget_places() { last_.clear(); }
 
+    /// By step, and within one by action. Sums of several contacts are cut off and their actions hang on each
+    /// other from moment to moment: where contacts that move or act differently may reach one place, the
+    /// interval is taken in steps of 1/240 s, so that a long frame does what short ones do.
     [[nodiscard]] std::span<const Contact> contacts() const { return contacts_; }
+    [[nodiscard]] bool has_steps() const { return !contacts_.empty() && contacts_.back().step > 0; }
     /// Contacts of the last collect() that were left out: not finite, of an unknown action, or cut off.
     [[nodiscard]] std::uint64_t unusable() const { return unusable_; }
 
@@ -90,9 +101,12 @@ class ContactList {
     };
     void add_scene(const ContactParams& params, const Settings& settings);
     void add_host(const HostValues& values, const Settings& settings);
-    void add(const Contact& contact, double power, double seconds, Gain gain);
+    void add(const Contact& contact, double power, Gain gain);
+    [[nodiscard]] bool hang_together() const;
+    void split(const Settings& settings);
 
     std::vector<Contact> contacts_;
+    std::vector<Contact> whole_;  ///< before they are split into steps
     std::vector<Place> last_;
     std::uint64_t unusable_ = 0;
 };

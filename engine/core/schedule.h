@@ -105,6 +105,10 @@ class Schedule {
     }
     [[nodiscard]] std::span<const Settlement> outputs() const { return outputs_; }
     [[nodiscard]] std::span<const HistoryStep> history() const { return history_; }
+    /// Outside of this, the picture of key `newer` is as that of `older`; none: not known.
+    [[nodiscard]] std::optional<PixelRegion> changed(std::uint64_t older, std::uint64_t newer) const {
+        return changes_.between(older, newer);
+    }
     /// What each plan texture holds when all of the above is done, swaps included. A texture whose pass
     /// failed holds 0.
     [[nodiscard]] std::span<const std::uint64_t> held_after() const { return held_after_; }

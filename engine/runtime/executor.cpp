@@ -420,7 +420,8 @@ std::optional<Executor::Output> Executor::output(std::string_view name) const {
         return std::nullopt;
     }
     const ContentState& state = schedule_.contents()[found->content];
-    return Output{state.empty ? nullptr : &texture_of(state.holder), &plan_.contents[found->content]};
+    return Output{state.empty ? nullptr : &texture_of(state.holder), &plan_.contents[found->content],
+                  state.key};
 }
 
 GLuint Executor::release(std::string_view name) {

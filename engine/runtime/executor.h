@@ -43,8 +43,17 @@ class Executor {
     struct Output {
         const gl::Texture* texture = nullptr;
         const PlanContent* content = nullptr;
+        std::uint64_t key = 0;  ///< names what it holds: equal keys, equal pixels
     };
     [[nodiscard]] std::optional<Output> output(std::string_view name) const;
+    /// Outside of this, content `newer` is as `older` (Output::key); none: not known.
+    [[nodiscard]] std::optional<PixelRegion> changed(std::uint64_t older, std::uint64_t newer) const {
+        return schedule_.changed(older, newer);
+    }
+    /// To read an output's texture, of colour, through; valid until the next frame.
+    [[nodiscard]] const gl::Framebuffer& framebuffer(const Output& output) {
+        return pool_.framebuffer(std::span(&output.texture, 1), nullptr, "watched target");
+    }
     /// Gives away the texture of an output; 0 where it is empty or imported. The frame's other targets are
     /// then drawn anew, too.
     [[nodiscard]] GLuint release(std::string_view name);

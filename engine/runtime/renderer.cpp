@@ -16,6 +16,7 @@
 #include "engine/runtime/executor.h"
 #include "engine/runtime/presenter.h"
 #include "engine/runtime/scene_graph.h"
+#include "engine/runtime/target_watch.h"
 #include "engine/runtime/timeline_values.h"
 
 namespace viscera {
@@ -95,7 +96,8 @@ class Renderer::Impl {
                      .check_errors = options.check_errors,
                      .observer = std::move(options.observer)}),
           presenter_(shared_),
-          capture_(*gl_) {
+          capture_(*gl_),
+          watch_(*gl_, watch_path(WatchPath::automatic)) {
         entry_.leave();
     }
 
@@ -112,6 +114,7 @@ class Renderer::Impl {
         has_history_ = reads_history(effects_);
         assets_.begin_scene();
         planned_ = same_scene_ = false;
+        watch_.forget();
     }
 
     void set_parameter(std::string_view pass, std::string_view pointer, const nlohmann::json& value) {
@@ -176,7 +179,9 @@ class Renderer::Impl {
             with_values.values = &timeline_.at(frame.time_s, log_);
             executor_.run(with_values, report_);
         } else {
+            watch_.poll();  // what of the last frame has been done by now would lie a frame back afterwards
             executor_.run(frame, report_);
+            watch_.frame_done(executor_, frame.index, frame.time_s);
         }
         if (frame.present.enabled) {
             present(frame.present);
@@ -200,6 +205,17 @@ class Renderer::Impl {
         dump_ = std::move(request);
         capture_.set_sink(std::move(sink));
         planned_ = false;
+    }
+
+    void watch(std::vector<std::string> targets, WatchPath path) {
+        watch_.set_path(watch_path(path));
+        watch_.set_targets(targets);
+        planned_ = false;
+    }
+
+    [[nodiscard]] WatchPath watch_path(WatchPath path) const {
+        const WatchPath best = capabilities_.software ? WatchPath::deferred : WatchPath::buffered;
+        return path == WatchPath::automatic ? best : path;
     }
 
     void keep(std::vector<std::string> targets) {
@@ -254,6 +270,7 @@ class Renderer::Impl {
     Executor executor_;
     Presenter presenter_;
     Capture capture_;
+    TargetWatch watch_;
     DumpRequest dump_;
     std::vector<std::string> kept_;
     std::vector<std::string> dump_names_;
@@ -307,6 +324,8 @@ class Renderer::Impl {
         // What is read back is an output: it keeps its texture to the end of the frame.
         std::vector<std::string> more = dump_names_;
         more.insert(more.end(), kept_.begin(), kept_.end());
+        const std::vector<std::string> watched = watch_.targets();
+        more.insert(more.end(), watched.begin(), watched.end());
         executor_.set_plan(compile_with(more), imported_, effects_, same_scene_);
         planned_ = same_scene_ = true;
     }
@@ -371,6 +390,13 @@ void Renderer::set_dump(DumpRequest request, CaptureSink sink) {
 }
 void Renderer::keep(std::vector<std::string> targets) {
     impl_->keep(std::move(targets));
+}
+void Renderer::watch(std::vector<std::string> targets, WatchPath path) {
+    impl_->with_host_state([&] { impl_->watch(std::move(targets), path); });
+}
+const WatchedTarget* Renderer::watched(std::string_view target) {
+    impl_->with_host_state([&] { impl_->watch_.poll(); });
+    return impl_->watch_.find(target);
 }
 void Renderer::poll_captures() {
     impl_->with_host_state([&] { impl_->capture_.poll(false); });

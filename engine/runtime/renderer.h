@@ -65,6 +65,25 @@ struct CapturedFrame {
 /// one captured.
 using CaptureSink = std::function<void(CapturedFrame&&)>;
 
+/// A copy of a target, as of a frame that may lie a little back.
+struct WatchedTarget {
+    std::string target;
+    Image image;
+    std::uint64_t frame = 0;  ///< Frame::index of the latest frame that it is right for
+    double time_s = 0.0;      ///< and its time
+    /// Frames rendered since: 0 right after a frame that changed nothing, mostly 1 while it changes, more
+    /// when the GPU is behind.
+    std::uint64_t frames_behind = 0;
+    std::uint64_t version = 0;  ///< changes whenever the image does
+};
+
+/// How watched targets come back.
+enum class WatchPath {
+    automatic,  ///< deferred on software renderers, whose read-backs wait for the frame; else buffered
+    buffered,   ///< into pixel buffers, right after the frame
+    deferred,   ///< into a copy on the GPU first, and from there once it is done
+};
+
 /// Which targets are read back: the scene's outputs, every target that lives, or names.
 struct DumpRequest {
     enum class Kind { none, outputs, all, names };
@@ -105,6 +124,13 @@ class Renderer {
     /// Targets kept to the end of each frame besides the scene's outputs, so that they can be presented and
     /// read.
     void keep(std::vector<std::string> targets);
+    /// Keeps copies of targets of colour, for logic that asks what they hold. Each frame that changes one
+    /// sends the part that changed on its way, and never waits for it. Frames fail with Error(usage) for a
+    /// target of depth.
+    void watch(std::vector<std::string> targets, WatchPath path = WatchPath::automatic);
+    /// The latest copy that has arrived, without waiting; valid until the next call of any member. Null: not
+    /// watched, or none has arrived yet.
+    [[nodiscard]] const WatchedTarget* watched(std::string_view target);
     /// Which targets the next frames read back, and who receives them.
     void set_dump(DumpRequest request, CaptureSink sink);
     /// Hands over captures that have arrived, without waiting.

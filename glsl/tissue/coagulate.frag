@@ -1,6 +1,6 @@
 #version 330 core
 // Energy that contacts give in one frame. METRIC_UV: distances in the texture in place of the world.
-// LONG_WAYS: see contact.glsl.
+// LONG_WAYS: see contact.glsl. IN_STEPS: contacts come in several steps, which act one after the other.
 #include "tissue/list.glsl"
 #include "tissue/contact.glsl"
 #include "tissue/energy_rules.glsl"
@@ -20,6 +20,13 @@ layout(location = 0) out float o_energy;
 // What a half float holds, with room to spare.
 const float largest_energy = 60000.0;
 
+float with_dose(float e, vec3 sums, vec3 largest) {
+    vec3 dose = min(sums, largest);
+    e = coagulated(e, dose.x);
+    e = sounded(e, dose.y, u_e_max);
+    return dissected(e, dose.z, u_e_max);
+}
+
 void main() {
     // The last content may be a single black texel, so it is looked up by coordinates.
     vec2 uv = gl_FragCoord.xy / u_size;
@@ -32,17 +39,26 @@ void main() {
     vec3 place = position.xyz;
     bool there = position.w > 0.0;
 #endif
-    vec3 sums = vec3(0.0);
-    vec3 largest = vec3(0.0);
-    for (int i = 0; i < v_contacts.y; ++i) {
-        int entry = v_contacts.x + i;
-        add_contact(u_contacts, int(list_item(u_list, entry >> 2)[entry & 3]), place, sums, largest);
-    }
     vec3 from_limit = place - u_limit.xyz;
     bool within = there && dot(from_limit, from_limit) <= u_limit.w;
-    vec3 dose = within ? min(sums, largest) : vec3(0.0);
-    e = coagulated(e, dose.x);
-    e = sounded(e, dose.y, u_e_max);
-    e = dissected(e, dose.z, u_e_max);
+    float changed = e;
+    vec3 sums = vec3(0.0);
+    vec3 largest = vec3(0.0);
+    float last_step = 0.0;
+    for (int i = 0; i < v_contacts.y; ++i) {
+        int entry = v_contacts.x + i;
+        int number = 3 * int(list_item(u_list, entry >> 2)[entry & 3]);
+        vec4 kind = list_item(u_contacts, number + 2);
+#ifdef IN_STEPS
+        if (kind.w != last_step) {
+            changed = with_dose(changed, sums, largest);
+            sums = vec3(0.0);
+            largest = vec3(0.0);
+            last_step = kind.w;
+        }
+#endif
+        add_contact(list_item(u_contacts, number), list_item(u_contacts, number + 1), kind, place, sums, largest);
+    }
+    e = within ? with_dose(changed, sums, largest) : e;
     o_energy = clamp(e, -largest_energy, largest_energy);
 }

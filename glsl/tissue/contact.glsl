@@ -32,12 +32,9 @@ float mean_of_long_way(float x, float q) {
 }
 #endif
 
-// Three items per contact: middle of the way and dose; direction and half its length; 1 / sigma, reach^2, action.
+// Three items per contact: middle of the way and dose; direction and half its length; 1 / sigma, reach^2, action, step.
 // Adds to the sum of the contact's action, and keeps the largest dose of any that reaches here.
-void add_contact(sampler2D contacts, int i, vec3 place, inout vec3 sums, inout vec3 largest) {
-    vec4 middle = list_item(contacts, 3 * i);
-    vec4 way = list_item(contacts, 3 * i + 1);
-    vec4 kind = list_item(contacts, 3 * i + 2);
+void add_contact(vec4 middle, vec4 way, vec4 kind, vec3 place, inout vec3 sums, inout vec3 largest) {
     vec3 from = place - middle.xyz;
     float along = dot(from, way.xyz);
     vec3 beside = from - along * way.xyz;

@@ -130,7 +130,9 @@ void play(EnergyStage& stage, int frames_per_key, std::vector<std::vector<Source
             {back ? 27.0 - k : 9.0 + 5.0 * k, 8.0, 0.3, 12.0, 1.0,
              back ? Action::coagulate : Action::dissect},
             {8.0 + 3.0 * k, 20.0 + std::sin(k), 0.0, 12.0, 1.0, Action::ultrasound},
-            {28.0 - 2.0 * k, 32.5, 0.5, 9.0, 1.0, Action::coagulate}};
+            {28.0 - 2.0 * k, 32.5, 0.5, 9.0, 1.0, Action::coagulate},
+            {34.0, 8.0 + 3.0 * k, 0.0, 3.0, 1.0, Action::coagulate},
+            {35.0, 8.0 + 3.0 * k, 0.0, 4.0, 1.0, Action::coagulate}};
     };
     constexpr int keys = 7;
     for (int i = 0; i <= keys * frames_per_key; ++i) {
