@@ -9,6 +9,8 @@
 #include "assets/generate/tube.h"
 #include "assets/generate/vessel_mesh.h"
 #include "assets/generate/volume_angiogram.h"
+#include "assets/generate/volume_artery.h"
+#include "assets/generate/volume_fetus.h"
 #include "assets/generate/volume_files.h"
 #include "assets/generate/volume_head.h"
 #include "assets/generate/write_file.h"
@@ -64,6 +66,8 @@ void generate_volumes(const std::filesystem::path& folder, std::uint64_t seed, i
     write_volume(head.labels, folder / "volumes" / "head_labels.nrrd");
     write_volume(head.perfusion, folder / "volumes" / "overlay.nrrd");
     write_volume(make_angiogram(seed, coarser), folder / "volumes" / "angiogram.mha");
+    write_volume(make_artery(seed, coarser), folder / "volumes" / "artery.nrrd");
+    write_volume(make_fetus(seed, coarser), folder / "volumes" / "fetus.nrrd");
 }
 
 void generate_all(const std::filesystem::path& folder, std::uint64_t seed, int coarser) {

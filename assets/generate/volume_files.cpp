@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdio>
+#include <numbers>
 #include <stdexcept>
 #include <string>
 
@@ -67,6 +68,24 @@ std::string meta_image(const Volume& v) {
            data;
 }
 
+/// How samples lie on cylinders and spheres, as docs/conventions.md describes it.
+std::string geometry_keys(const VolumeShape& shape) {
+    if (!shape.curvilinear()) {
+        return "";
+    }
+    constexpr double degrees = 180.0 / std::numbers::pi;
+    const bool cylindrical = shape.kind == VolumeKind::cylindrical;
+    return std::string("viscera_geometry:=") + (cylindrical ? "cylindrical" : "spherical") +
+           "\nviscera_r_min_mm:=" + text_of(shape.r_min_mm) +
+           "\nviscera_r_max_mm:=" + text_of(shape.r_max_mm) +
+           "\nviscera_first_angle_deg:=" + text_of(degrees * shape.first_angle_rad) +
+           "\nviscera_angle_deg:=" + text_of(degrees * shape.angle_rad) +
+           "\nviscera_wrap:=" + (shape.wrap ? "true" : "false") +
+           (cylindrical ? "\nviscera_height_mm:=" + text_of(shape.height_mm)
+                        : "\nviscera_latitude_deg:=" + text_of(degrees * shape.latitude_rad)) +
+           "\n";
+}
+
 std::string nrrd(const Volume& v) {
     const VolumeGrid& g = v.grid;
     constexpr std::array<const char*, 5> types{"uint8", "int8", "uint16", "int16", "float"};
@@ -79,7 +98,7 @@ std::string nrrd(const Volume& v) {
            "\ndimension: 3\nspace: left-posterior-superior\nsizes: " +
            joined(g.dims.x, g.dims.y, g.dims.z, " ") + "\nspace directions:" + axes +
            "\nkinds: domain domain domain\nendian: little\nencoding: gzip\nspace origin: (" +
-           joined(g.origin_mm.x, g.origin_mm.y, g.origin_mm.z, ",") + ")\n\n" +
+           joined(g.origin_mm.x, g.origin_mm.y, g.origin_mm.z, ",") + ")\n" + geometry_keys(g.shape) + "\n" +
            compressed(v.voxels, Wrapper::gzip);
 }
 

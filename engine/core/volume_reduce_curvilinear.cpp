@@ -108,13 +108,13 @@ void resample(const Volume& volume, const std::array<std::vector<Window>, 3>& wi
     }
 }
 
-/// Samples of an axis after reduction; an extent keeps its two ends.
+/// Samples of an axis after reduction; an extent keeps its two ends. No more than a box's axis would have, by
+/// which it is judged whether a reduction fits.
 int reduced_count(int count, int factor, bool ring) {
     if (count == 1) {
         return 1;
     }
-    const double intervals = static_cast<double>(ring ? count : count - 1) / factor;
-    return std::max(1, static_cast<int>(std::lround(intervals))) + (ring ? 0 : 1);
+    return ring ? std::max(1, (count + factor / 2) / factor) : std::max(1, (count - 1) / factor) + 1;
 }
 
 }  // namespace

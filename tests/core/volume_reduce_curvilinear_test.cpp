@@ -74,9 +74,9 @@ TEST(ReducedCurvilinear, KeepsTheShapeAndDividesItsExtents) {
         EXPECT_EQ(b.grid.shape, part.grid.shape);
         a.validate();
         b.validate();
-        EXPECT_EQ(a.grid.dims.x, std::max(1L, std::lround(28.0 / factor)) + 1);
+        EXPECT_EQ(a.grid.dims.x, std::max(1, 28 / factor) + 1);
         EXPECT_EQ(a.grid.dims.y, std::max(1L, std::lround(37.0 / factor)));
-        EXPECT_EQ(b.grid.dims.x, std::max(1L, std::lround(36.0 / factor)) + 1);
+        EXPECT_EQ(b.grid.dims.x, std::max(1, 36 / factor) + 1);
         EXPECT_EQ(b.grid.dims.z, 1);
         for (const Volume* volume : {&a, &b}) {
             for_each(*volume, [](const glm::dvec3&, double value) { ASSERT_EQ(value, 0.25); });
