@@ -259,9 +259,11 @@ class SceneReader {
             if (port == "comment") {
                 continue;
             }
-            if (!target.is_string()) {
+            if (target.is_null()) {
+                pass.targets.emplace(port, "");
+            } else if (!target.is_string()) {
                 fault(child_pointer(pointer, port),
-                      "expected the name of a target, not " + std::string(kind_name(target)));
+                      "expected the name of a target or null, not " + std::string(kind_name(target)));
             } else if (!is_target_name(target.get_ref<const std::string&>())) {
                 fault(child_pointer(pointer, port), target_name_rule);
             } else {

@@ -34,7 +34,7 @@ struct ScenePass {
     bool enabled = true;
     nlohmann::json parameters = nlohmann::json::object();
     std::map<std::string, std::string>
-        targets;          ///< port -> target, where it differs from the effect's default
+        targets;          ///< port -> target, where it differs from the effect's default; empty: unbound
     std::string pointer;  ///< of this pass in the file: "/passes/0"
 };
 

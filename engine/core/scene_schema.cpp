@@ -117,10 +117,13 @@ void set_length(json& schema, int least, int most) {
         schema["allOf"] = std::move(rules);
     }
     properties["parameters"] = {{"type", "object"}, {"description", "Parameters of the effect."}};
-    properties["targets"] = {{"type", "object"},
-                             {"description", "Targets that stand in for the effect's own, by port."},
-                             {"properties", {{"comment", json::object()}}},
-                             {"additionalProperties", {{"$ref", target_name}}}};
+    properties["targets"] = {
+        {"type", "object"},
+        {"description",
+         "Targets that stand in for the effect's own, by port; null: an optional port "
+         "is left unbound."},
+        {"properties", {{"comment", json::object()}}},
+        {"additionalProperties", {{"anyOf", {{{"$ref", target_name}}, {{"type", "null"}}}}}}};
     return schema;
 }
 

@@ -74,7 +74,11 @@ SceneEffects make_effects(const Scene& scene, const Registry& registry) {
         }
         const std::vector<Port> ports = effect->ports();
         for (const auto& [port, target] : pass.targets) {
-            if (std::ranges::find(ports, port, &Port::name) == ports.end()) {
+            const auto bound = std::ranges::find(ports, port, &Port::name);
+            if (bound != ports.end() && target.empty() && !bound->optional) {
+                faults.push_back({pass.pointer + "/targets/" + port,
+                                  "effect '" + pass.effect + "' cannot do without port '" + port + "'"});
+            } else if (bound == ports.end()) {
                 std::vector<std::string> known;
                 for (const Port& p : ports) {
                     known.push_back(p.name);
@@ -118,7 +122,7 @@ Graph build_graph(const Scene& scene, const SceneEffects& effects, std::span<con
             const auto given = pass.targets.find(port.name);
             const std::string target = given == pass.targets.end() ? port.target : given->second;
             if (target.empty()) {
-                continue;  // an optional port without a default that the scene does not bind
+                continue;  // an optional port that nobody binds
             }
             node.ports.push_back({port.name, target, port.access, port.optional, port.passthrough});
             if (port.access == Access::write && !is_imported(target) && !described.contains(target)) {

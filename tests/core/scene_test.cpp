@@ -215,7 +215,7 @@ TEST(ParseScene, NamesEachFault) {
         {with("/passes/1/targets", json::array()),
          "/passes/1/targets: expected an object of port and target, not a list"},
         {with("/passes/1/targets/main", 1),
-         "/passes/1/targets/main: expected the name of a target, not a number"},
+         "/passes/1/targets/main: expected the name of a target or null, not a number"},
         {with("/passes/1/targets/main", "A"), "/passes/1/targets/main: a target's name is made of"},
         {with("/passes/0/parameters/$ref", "#/shared/flaw"),
          "/passes/0/parameters/$ref: nothing stands at \"#/shared/flaw\"; did you mean \"#/shared/flow\"?"},

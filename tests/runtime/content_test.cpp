@@ -1,3 +1,4 @@
+#include "engine/core/error.h"
 #include "engine/gl/pixel_transfer.h"
 #include "tests/runtime/runtime_test.h"
 
@@ -17,6 +18,33 @@ class Content : public RuntimeTest {
                       }});
     }
 };
+
+TEST_P(Content, NullUnbindsAnOptionalPortAndNoOther) {
+    Port optional = read_port();
+    optional.optional = true;
+    add("looks", {.ports = {write_port(), optional},
+                  .draw = [](const Pass& pass, double) { draw_fill(pass, pass.has("in") ? 1.0 : 2.0); }});
+    const auto scene = [](const char* reader, const char* binding) {
+        return parse_scene(std::string(R"({"version": 1, "resolution": [8, 4], "outputs": ["y"], "passes": [
+            {"name": "a", "effect": "fill", "targets": {"out": "x"}},
+            {"name": "b", "effect": ")") +
+                               reader + R"(", "targets": {"out": "y", "in": )" + binding + "}}]}",
+                           "test.json");
+    };
+    renderer().set_scene(scene("looks", "\"x\""));
+    render(0);
+    EXPECT_EQ(value_of("y"), 1.0F);
+    renderer().set_scene(scene("looks", "null"));
+    EXPECT_EQ(status(render(1), 0), PassStatus::culled);
+    EXPECT_EQ(value_of("y"), 2.0F);
+    try {
+        renderer().set_scene(scene("add", "null"));
+        ADD_FAILURE() << "a port that is needed was left unbound";
+    } catch (const Error& error) {
+        EXPECT_THAT(error.what(),
+                    testing::HasSubstr("/passes/1/targets/in: effect 'add' cannot do without port 'in'"));
+    }
+}
 
 TEST_P(Content, HistoryStartsClearAndCountsFrames) {
     renderer().set_scene(make_scene({{"feedback", 1.0}}, {"x"}));
