@@ -18,15 +18,16 @@ void DepthOfFieldParams::visit(ParamVisitor& v) {
     v.field({.name = "radius",
              .doc = "Radius of the blur at blurriness 1, as a fraction of the target's height.",
              .min = 0.0,
-             .max = 0.1},
+             .max = 0.25},
             radius);
     v.field({.name = "taps", .doc = "Pixels read for each blurred one.", .min = 4, .max = 256}, taps);
-    v.field({.name = "largest_blurriness",
-             .doc = "That the picture holds: the larger of clamp_near and clamp_far of what drew it. Where it "
-                    "stands for less than half a pixel the pass rests.",
-             .min = 0.0,
-             .max = 1.0},
-            largest_blurriness);
+    v.field(
+        {.name = "largest_blurriness",
+         .doc = "That the picture holds: the larger of clamp_near and clamp_far of what drew it. Where it "
+                "stands for less than half a pixel the pass rests.",
+         .min = 0.0,
+         .max = 1.0},
+        largest_blurriness);
 }
 
 std::vector<glm::dvec2> disc_taps(int count) {

@@ -8,7 +8,7 @@
 namespace viscera {
 
 /// The part of a target [pixels] that a box can cover, one pixel of margin included; all of it when the box
-/// reaches behind the eye; empty when it lies outside the view.
+/// reaches before the near plane; empty when it lies outside the view, behind the eye included.
 [[nodiscard]] PixelRect project_bounds(const Bounds& bounds, const glm::dmat4& view_projection,
                                        glm::ivec2 size);
 

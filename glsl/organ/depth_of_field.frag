@@ -9,8 +9,7 @@ layout(location = 0) out vec4 o_colour;
 void main() {
     ivec2 last = textureSize(u_picture, 0) - 1;
     vec4 here = texelFetch(u_picture, ivec2(gl_FragCoord.xy), 0);
-    float b = 2.0 * here.a - 1.0;
-    float radius = abs(b) * u_radius;
+    float radius = abs(2.0 * here.a - 1.0) * u_radius;
     // Sharp pixels take no turn of the loop: it ends where all pixels of a group are sharp.
     int count = radius < 0.5 ? 0 : TAPS;
     vec3 sum = here.rgb;
@@ -19,9 +18,8 @@ void main() {
         vec2 way = radius * u_taps[i];
         // Texels, not a mix of them: between two depths there is none.
         vec4 there = texelFetch(u_picture, clamp(ivec2(floor(gl_FragCoord.xy + way)), ivec2(0), last), 0);
-        float nearer = 2.0 * there.a - 1.0;
-        float reach = clamp(abs(nearer) * u_radius - length(way) + 1.0, 0.0, 1.0);
-        float weight = nearer >= b ? 1.0 : reach;
+        float reach = clamp(abs(2.0 * there.a - 1.0) * u_radius - length(way) + 1.0, 0.0, 1.0);
+        float weight = there.a >= here.a ? 1.0 : reach;
         sum += weight * there.rgb;
         weights += weight;
     }

@@ -104,7 +104,8 @@ json OrganStage::scene() const {
     json targets = json::object();
     for (const Filled& filled : filled_) {
         passes.push_back(pass("fill-" + filled.target, "picture.image",
-                              {{"file", filled.file}, {"fit", "stretch"}}, {{"image", filled.target}}));
+                              {{"file", filled.file}, {"fit", "stretch"}, {"monochrome", false}},
+                              {{"image", filled.target}}));
         targets[filled.target] = {{"format", "rgba32f"}, {"size", {filled.size, filled.size}}};
     }
     json bound = json::object();

@@ -296,7 +296,9 @@ Buffer depth_of_field(const Buffer& picture, double radius_pixels, const std::ve
                     std::clamp(static_cast<int>(std::floor(y + 0.5 + way.y)), 0, picture.height - 1);
                 const double there = 2.0 * picture.at(i, j, 3) - 1.0;
                 const double reach = std::abs(there) * radius_pixels;
-                const double weight = there >= b ? 1.0 : std::clamp(reach - glm::length(way) + 1.0, 0.0, 1.0);
+                const double weight = picture.at(i, j, 3) >= picture.at(x, y, 3)
+                                          ? 1.0
+                                          : std::clamp(reach - glm::length(way) + 1.0, 0.0, 1.0);
                 sum += weight * glm::dvec3(picture.at(i, j, 0), picture.at(i, j, 1), picture.at(i, j, 2));
                 weights += weight;
             }
