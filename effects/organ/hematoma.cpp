@@ -12,8 +12,8 @@ namespace {
 constexpr int columns = 256;
 
 bool usable(const glm::dvec4& spot) {
-    return std::isfinite(spot.x) && std::isfinite(spot.y) && std::isfinite(spot.z) &&
-           std::isfinite(spot.w) && spot.w > 0.0;
+    return std::isfinite(spot.x) && std::isfinite(spot.y) && std::isfinite(spot.z) && std::isfinite(spot.w) &&
+           spot.w > 0.0;
 }
 
 }  // namespace

@@ -11,10 +11,10 @@ namespace viscera::organ {
 
 /// Lights as the shader has them: in the eye's axes, counted from the organ's centre.
 struct LightUniforms {
-    std::array<glm::vec4, most_lights> place{};   ///< w 1: a point [mm]; 0: direction to a light at infinity
+    std::array<glm::vec4, most_lights> place{};  ///< w 1: a point [mm]; 0: direction to a light at infinity
     std::array<glm::vec3, most_lights> colour{};
-    std::array<glm::vec2, most_lights> fall{};    ///< 1 / falloff^2 [1/mm^2], exponent of the angle
-    std::array<glm::vec2, most_lights> glow{};    ///< distance [mm], gain [1/mm^2]
+    std::array<glm::vec2, most_lights> fall{};  ///< 1 / falloff^2 [1/mm^2], exponent of the angle
+    std::array<glm::vec2, most_lights> glow{};  ///< distance [mm], gain [1/mm^2]
     std::size_t count = 0;
 };
 

@@ -107,9 +107,10 @@ void CoagulationParams::visit(ParamVisitor& v) {
     v.field({.name = "saturation", .doc = "Share of that colour.", .min = 0.0, .max = 1.0}, saturation);
     v.field({.name = "brightness", .doc = "Factor on coagulated tissue.", .min = 0.0, .max = 10.0},
             brightness);
-    v.field({.name = "burn_curve",
-             .doc = "corrected: untouched tissue is not burnt; thesis: as published, which burns it by 1.8 %."},
-            burn_curve);
+    v.field(
+        {.name = "burn_curve",
+         .doc = "corrected: untouched tissue is not burnt; thesis: as published, which burns it by 1.8 %."},
+        burn_curve);
     v.field({.name = "bump_gain",
              .doc = "How much rougher than untouched tissue fully burnt tissue is.",
              .min = 0.0,
@@ -143,9 +144,8 @@ void HintParams::visit(ParamVisitor& v) {
 
 void SpotParams::visit(ParamVisitor& v) {
     v.field({.name = "centre", .doc = "World place [mm], or u, v and 0."}, centre);
-    v.field(
-        {.name = "radius", .doc = "In mm, or in texture coordinates.", .min = 0.0, .min_excluded = true},
-        radius);
+    v.field({.name = "radius", .doc = "In mm, or in texture coordinates.", .min = 0.0, .min_excluded = true},
+            radius);
 }
 
 void HematomaParams::visit(ParamVisitor& v) {
@@ -192,8 +192,9 @@ void OrganParams::visit(ParamVisitor& v) {
     v.field({.name = "shading", .doc = "How light is thrown back."}, shading);
     v.field({.name = "lights", .doc = "At most 8; by default one beside the camera."}, lights);
     v.field({.name = "focus", .doc = "Depth of field: what alpha tells organ.depth_of_field."}, focus);
-    v.field({.name = "faces", .doc = "Which sides of the triangles are drawn; each is lit from its own side."},
-            faces);
+    v.field(
+        {.name = "faces", .doc = "Which sides of the triangles are drawn; each is lit from its own side."},
+        faces);
     v.field({.name = "blending",
              .doc = "blended: a membrane, drawn from back to front, that hides nothing behind it."},
             blending);

@@ -19,10 +19,10 @@ void OwnMesh::select_scalar(const SurfaceMesh& surface, const std::string& name,
                             Log& log) {
     const HostValues::Entry* given = values == nullptr ? nullptr : values->find(name);
     if (given != nullptr && given->values.size() != surface.merged_vertex_count()) {
-        log.fault("organ.cut_count",
-                  "host values '" + name + "' have " + std::to_string(given->values.size()) +
-                      " entries for " + std::to_string(surface.merged_vertex_count()) +
-                      " vertices; they are left out");
+        log.fault("organ.cut_count", "host values '" + name + "' have " +
+                                         std::to_string(given->values.size()) + " entries for " +
+                                         std::to_string(surface.merged_vertex_count()) +
+                                         " vertices; they are left out");
         given = nullptr;
     }
     if (given == nullptr) {
@@ -34,7 +34,11 @@ void OwnMesh::select_scalar(const SurfaceMesh& surface, const std::string& name,
     if (scalar_version_ != given->version) {
         scalar_version_ = given->version;
         host_name_ = "host " + name;
-        mesh_->update_scalars(host_name_, given->values);
+        scalar_.resize(surface.data().positions.size());
+        for (std::size_t v = 0; v < scalar_.size(); ++v) {
+            scalar_[v] = given->values[surface.merged_vertex(static_cast<std::uint32_t>(v))];
+        }
+        mesh_->update_scalars(host_name_, scalar_);
     }
     mesh_->select_scalar(host_name_);
 }
@@ -64,9 +68,9 @@ double mm_per_uv(const MeshData& mesh, std::span<const glm::vec2> uvs) {
         const glm::dvec2 u = glm::dvec2(uvs[b]) - glm::dvec2(uvs[a]);
         const glm::dvec2 v = glm::dvec2(uvs[c]) - glm::dvec2(uvs[a]);
         const double area = std::abs(u.x * v.y - u.y * v.x);
-        const double size = glm::length(glm::cross(
-            glm::dvec3(mesh.positions[b]) - glm::dvec3(mesh.positions[a]),
-            glm::dvec3(mesh.positions[c]) - glm::dvec3(mesh.positions[a])));
+        const double size =
+            glm::length(glm::cross(glm::dvec3(mesh.positions[b]) - glm::dvec3(mesh.positions[a]),
+                                   glm::dvec3(mesh.positions[c]) - glm::dvec3(mesh.positions[a])));
         // A triangle without a place in the texture says nothing of the scale of the others.
         if (area > 0.0 && std::isfinite(area)) {
             texture += area;

@@ -31,6 +31,7 @@ class OwnMesh {
     std::optional<gl::Mesh> mesh_;
     std::uint64_t shape_ = 0;
     std::uint64_t scalar_version_ = 0;
+    std::vector<float> scalar_;
     std::string host_name_;  ///< of the host's array among the mesh's scalars
     TriangleOrderScratch scratch_;
     std::vector<std::uint32_t> sorted_;

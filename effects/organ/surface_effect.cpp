@@ -18,11 +18,10 @@ constexpr glm::dvec3 liver_colour(0.44, 0.13, 0.1);
 
 /// The nearest surface wins; membranes hide nothing from one another and keep what lies behind in sight.
 constexpr gl::RasterState opaque_state = gl::depth_tested_state;
-constexpr gl::RasterState blended_state{
-    .depth_test = GL_LESS,
-    .blend = gl::Blend{.destination_rgb = GL_ONE_MINUS_SRC1_COLOR,
-                       .source_alpha = GL_ONE,
-                       .destination_alpha = GL_ONE_MINUS_SRC1_ALPHA}};
+constexpr gl::RasterState blended_state{.depth_test = GL_LESS,
+                                        .blend = gl::Blend{.destination_rgb = GL_ONE_MINUS_SRC1_COLOR,
+                                                           .source_alpha = GL_ONE,
+                                                           .destination_alpha = GL_ONE_MINUS_SRC1_ALPHA}};
 
 double hint_share(const HintParams& hint, double time_s) {
     if (hint.period_s == 0.0) {

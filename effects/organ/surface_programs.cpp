@@ -27,26 +27,24 @@ Port optional_read(const char* name, const char* target, const char* doc) {
 std::vector<Port> SurfaceEffect::ports() const {
     const Access access = params_.into_picture ? Access::modify : Access::write;
     const double beyond = params_.focus ? params_.focus->clamp_far : 0.0;
-    std::vector<Port> ports{{.name = "colour",
-                             .access = access,
-                             .target = "organ.color",
-                             .doc = "Colour as it is lit; alpha: blurriness b as b/2 + 1/2.",
-                             .format = PixelFormat::rgba16f,
-                             .clear = {0.0F, 0.0F, 0.0F, static_cast<float>(stored_blurriness(beyond))}},
-                            {.name = "depth",
-                             .access = access,
-                             .target = "organ.depth",
-                             .doc = "Depth of the nearest opaque surface; 1 where there is none.",
-                             .format = PixelFormat::depth32f,
-                             .clear = {1.0F, 0.0F, 0.0F, 0.0F}},
-                            optional_read("energy", "tissue.energy",
-                                          "Energy: above 0 coagulated, below 0 dissected."),
-                            optional_read("blood_colour", "tissue.blood_color",
-                                          "Factor on the colour, and the amount of blood."),
-                            optional_read("blood_normal", "tissue.blood_normal",
-                                          "Tangent-space normal of the blood's surface."),
-                            optional_read("blood_height", "tissue.blood_height",
-                                          "Height of the blood [mm]; in place of a normal.")};
+    std::vector<Port> ports{
+        {.name = "colour",
+         .access = access,
+         .target = "organ.color",
+         .doc = "Colour as it is lit; alpha: blurriness b as b/2 + 1/2.",
+         .format = PixelFormat::rgba16f,
+         .clear = {0.0F, 0.0F, 0.0F, static_cast<float>(stored_blurriness(beyond))}},
+        {.name = "depth",
+         .access = access,
+         .target = "organ.depth",
+         .doc = "Depth of the nearest opaque surface; 1 where there is none.",
+         .format = PixelFormat::depth32f,
+         .clear = {1.0F, 0.0F, 0.0F, 0.0F}},
+        optional_read("energy", "tissue.energy", "Energy: above 0 coagulated, below 0 dissected."),
+        optional_read("blood_colour", "tissue.blood_color", "Factor on the colour, and the amount of blood."),
+        optional_read("blood_normal", "tissue.blood_normal", "Tangent-space normal of the blood's surface."),
+        optional_read("blood_height", "tissue.blood_height",
+                      "Height of the blood [mm]; in place of a normal.")};
     if (params_.diffuse_map.empty()) {
         ports.push_back(optional_read("diffuse", "", "Colour of the tissue, in texture space."));
     }
@@ -104,9 +102,10 @@ std::span<const ProgramDesc> SurfaceEffect::programs() const {
 
     programs_.clear();
     variants_.clear();
-    constexpr std::array<Variant, 4> bloods{
-        {{}, {.blood = true}, {.blood = true, .relief = BloodRelief::normal},
-         {.blood = true, .relief = BloodRelief::height}}};
+    constexpr std::array<Variant, 4> bloods{{{},
+                                             {.blood = true},
+                                             {.blood = true, .relief = BloodRelief::normal},
+                                             {.blood = true, .relief = BloodRelief::height}}};
     for (const bool diffuse : choices(true, !params_.diffuse_map.empty())) {
         for (const bool energy : choices(true, false)) {
             for (const Variant& blood : bloods) {
