@@ -215,7 +215,7 @@ void OrganParams::validate() const {
         throw Error(ErrorCode::scene, "/lights", "has more than " + std::to_string(most_lights) + " lights");
     }
     for (std::size_t i = 0; i < lights.size(); ++i) {
-        if (lights[i].place == LightPlace::infinity && !(glm::length(lights[i].position) > 0.0)) {
+        if (lights[i].place == LightPlace::infinity && lights[i].position == glm::dvec3(0.0)) {
             throw Error(ErrorCode::scene, "/lights/" + std::to_string(i) + "/position",
                         "has no length, so it is no direction");
         }

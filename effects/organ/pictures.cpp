@@ -82,7 +82,7 @@ Image colours_of(const Image& picture, Log& log, const std::string& name) {
 }
 
 std::shared_ptr<gl::Texture> slope_texture(const Pass& pass, const BumpParams& how) {
-    const std::string name = how.map.path.string();
+    const std::string& name = how.map.path.native();
     const std::uint64_t key = Hash()
                                   .add(std::string_view("organ slopes"))
                                   .add(std::string_view(name))
@@ -97,7 +97,7 @@ std::shared_ptr<gl::Texture> slope_texture(const Pass& pass, const BumpParams& h
 }
 
 std::shared_ptr<gl::Texture> colour_texture(const Pass& pass, const AssetPath& file) {
-    const std::string name = file.path.string();
+    const std::string& name = file.path.native();
     const std::uint64_t key =
         Hash().add(std::string_view("organ colours")).add(std::string_view(name)).value();
     return pass.assets().shared<gl::Texture>(key, [&] {

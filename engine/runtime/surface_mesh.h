@@ -65,8 +65,6 @@ class SurfaceMesh {
     [[nodiscard]] std::span<const glm::vec2> picture_uvs() const { return picture_uvs_; }
     /// Per vertex the first one at the same place in the file: seams closed.
     [[nodiscard]] std::span<const std::uint32_t> places() const { return place_; }
-    /// The file's own coordinates, one per vertex of data(); where it has none, those of texture space.
-    [[nodiscard]] std::span<const glm::vec2> picture_uvs() const { return picture_uvs_; }
     [[nodiscard]] const Bounds& bounds() const { return bounds_; }
     /// Where a placement turns about: the centre of the file's box.
     [[nodiscard]] const glm::dvec3& centre() const { return centre_; }

@@ -28,6 +28,7 @@ class WarmFrameTest : public testing::TestWithParam<HostStatePolicy> {
         renderer_->set_scene(load_scene(scenes / "angiography.json", small));
     }
 
+    [[nodiscard]] Renderer& renderer() { return *renderer_; }
     void set_scene(std::string_view text) { renderer_->set_scene(parse_scene(text, "test.json")); }
     /// Allocations of one frame.
     std::size_t allocations(double time_s, std::span<const HostVolume> volumes = {}) {
@@ -103,6 +104,32 @@ TEST_P(WarmFrameTest, AMovedVolumeWithEverythingInItAllocatesNothing) {
     for (int i = 0; i < 3; ++i) {
         EXPECT_EQ(allocations(time_s += 0.01, given), 0U) << "at " << time_s << " s";
         EXPECT_EQ(drawn(), 1U);
+    }
+}
+
+TEST_P(WarmFrameTest, AMovedOrganBehindAMembraneAllocatesNothing) {
+    const auto scenes = std::filesystem::path(VISCERA_SOURCE_DIR) / "assets" / "scenes";
+    const nlohmann::json membrane = {
+        {"name", "membrane"},
+        {"effect", "organ.surface"},
+        {"parameters",
+         {{"mesh", {{"file", "../meshes/organ.glb"}, {"placement", {{"scale", {1.02, 1.02, 1.02}}}}}},
+          {"hematoma", {{"spots", {{{"centre", {-40, -30, -25}}, {"radius", 20}}}}}},
+          {"blending", "blended"},
+          {"opacity", 0.2},
+          {"into_picture", true}}}};
+    const std::vector<SceneOverride> changes{{"/resolution", {64, 48}},
+                                             {"/camera/orbit_deg_per_s", 20},
+                                             {"/passes/2", membrane},
+                                             {"/outputs", {"organ.color"}}};
+    renderer().set_scene(load_scene(scenes / "organ.json", changes));
+    double time_s = 0.0;
+    for (int i = 0; i < 3; ++i) {
+        (void)allocations(time_s += 0.01);
+    }
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_EQ(allocations(time_s += 0.01), 0U) << "at " << time_s << " s";
+        EXPECT_EQ(drawn(), 3U);
     }
 }
 
