@@ -58,26 +58,4 @@ void OwnMesh::sort(const SurfaceMesh& surface, const glm::dvec3& axis) {
     mesh_->update_indices(sorted_);
 }
 
-double mm_per_uv(const MeshData& mesh, std::span<const glm::vec2> uvs) {
-    double surface = 0.0;
-    double texture = 0.0;
-    for (std::size_t t = 0; t + 2 < mesh.indices.size() && !uvs.empty(); t += 3) {
-        const std::uint32_t a = mesh.indices[t];
-        const std::uint32_t b = mesh.indices[t + 1];
-        const std::uint32_t c = mesh.indices[t + 2];
-        const glm::dvec2 u = glm::dvec2(uvs[b]) - glm::dvec2(uvs[a]);
-        const glm::dvec2 v = glm::dvec2(uvs[c]) - glm::dvec2(uvs[a]);
-        const double area = std::abs(u.x * v.y - u.y * v.x);
-        const double size =
-            glm::length(glm::cross(glm::dvec3(mesh.positions[b]) - glm::dvec3(mesh.positions[a]),
-                                   glm::dvec3(mesh.positions[c]) - glm::dvec3(mesh.positions[a])));
-        // A triangle without a place in the texture says nothing of the scale of the others.
-        if (area > 0.0 && std::isfinite(area)) {
-            texture += area;
-            surface += size;
-        }
-    }
-    return texture > 0.0 && std::isfinite(surface) ? std::sqrt(surface / texture) : 0.0;
-}
-
 }  // namespace viscera::organ

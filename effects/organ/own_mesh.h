@@ -37,8 +37,4 @@ class OwnMesh {
     std::vector<std::uint32_t> sorted_;
 };
 
-/// Millimetres of surface in a unit of texture coordinates: the root of the ratio of areas. 0 where the
-/// coordinates have none.
-[[nodiscard]] double mm_per_uv(const MeshData& mesh, std::span<const glm::vec2> uvs);
-
 }  // namespace viscera::organ

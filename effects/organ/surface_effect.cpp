@@ -45,15 +45,6 @@ void SurfaceEffect::load(Prepare& prepare) {
     parameters_key_ = prepare.parameters_key();
     surface_ = SurfaceMesh::load(prepare.assets(), params_.mesh);
     to_world_ = placement_matrix(params_.mesh.placement, surface_->centre());
-    // Slopes are of the surface as it was made; a placement makes relief larger with the organ.
-    const double scale = std::cbrt(std::abs(glm::determinant(glm::dmat3(to_world_))));
-    picture_mm_per_uv_ = scale * mm_per_uv(surface_->data(), surface_->picture_uvs());
-    tissue_mm_per_uv_ = scale * mm_per_uv(surface_->data(), surface_->data().uvs);
-    if (has_relief() && picture_mm_per_uv_ == 0.0) {
-        prepare.log().fault("organ.no_uv", params_.mesh.file.path.string() +
-                                               " has no texture coordinates of any extent: its relief is "
-                                               "not drawn");
-    }
 }
 
 Variant SurfaceEffect::variant_of(const Prepare& prepare) const {
@@ -185,8 +176,7 @@ void SurfaceEffect::set_material(const Pass& pass, const gl::Program& program) {
     if (has_relief()) {
         pass.bind(program, "u_slopes", *slope_texture(pass, params_.normal_map), gl::Filter::linear,
                   gl::Wrap::repeat);
-        program.set("u_bump", glm::vec2(params_.normal_map.strength * picture_mm_per_uv_,
-                                        params_.coagulation.bump_gain));
+        program.set("u_bump", glm::vec2(params_.normal_map.strength, params_.coagulation.bump_gain));
         real("u_bump_repeat", params_.normal_map.repeat);
     }
     if (variant_.energy) {
@@ -199,8 +189,7 @@ void SurfaceEffect::set_material(const Pass& pass, const gl::Program& program) {
         pass.bind(program, "u_blood", "blood_colour", gl::Filter::linear);
         pass.bind(program, "u_blood_normal", "blood_normal", gl::Filter::linear);
         pass.bind(program, "u_blood_height", "blood_height", gl::Filter::linear);
-        real("u_blood_bump", variant_.relief == BloodRelief::normal ? params_.blood.bump * tissue_mm_per_uv_
-                                                                    : params_.blood.bump);
+        real("u_blood_bump", params_.blood.bump);
     }
     if (variant_.cut) {
         picture(params_.cut.map, "u_cut", "cut");

@@ -54,8 +54,6 @@ class SurfaceEffect final : public Effect {
     std::uint64_t parameters_key_ = 0;
     std::shared_ptr<SurfaceMesh> surface_;
     glm::dmat4 to_world_{1.0};
-    double picture_mm_per_uv_ = 0.0;
-    double tissue_mm_per_uv_ = 0.0;
     double hint_share_ = 0.0;
     Hematoma hematoma_;
     OwnMesh own_mesh_;

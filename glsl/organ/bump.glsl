@@ -22,3 +22,13 @@ vec3 bumped(vec3 n, vec3 px, vec3 py, vec2 rise) {
 vec2 slopes_of(vec3 normal) {
     return normal.z > 1e-3 && dot(normal, normal) < 1e6 ? -normal.xy / normal.z : vec2(0.0);
 }
+
+// Rise of the height over the steps px and py for slopes that count in lengths along the directions of u and v; along_x and along_y:
+// the steps of (u, v). Lengths come from the steps themselves, so a stretched texture makes no relief steeper. Without texture
+// coordinates of any extent there is none.
+vec2 rise_of(vec2 slopes, vec3 px, vec3 py, vec2 along_x, vec2 along_y) {
+    float det = abs(along_x.x * along_y.y - along_x.y * along_y.x);
+    vec2 lengths = vec2(length(px * along_y.y - py * along_x.y), length(py * along_x.x - px * along_y.x));
+    vec2 per_unit = det > 0.0 ? slopes * lengths / det : vec2(0.0);
+    return vec2(dot(per_unit, along_x), dot(per_unit, along_y));
+}

@@ -16,8 +16,8 @@ uniform sampler2D u_diffuse;
 uniform float u_diffuse_repeat;
 #endif
 #ifdef NORMAL_MAP
-uniform sampler2D u_slopes;     // dH/du, dH/dv of a surface on which u and v are lengths
-uniform vec2 u_bump;            // [mm] in a unit of u or v; how much of it burning adds
+uniform sampler2D u_slopes;     // [mm/mm] along the directions of u and v
+uniform vec2 u_bump;            // factor on them; how much of it burning adds
 uniform float u_bump_repeat;
 #endif
 #ifdef ENERGY
@@ -28,7 +28,7 @@ uniform sampler2D u_blood;      // factor on the colour, amount
 #endif
 #ifdef BLOOD_NORMAL
 uniform sampler2D u_blood_normal;
-uniform float u_blood_bump;     // [mm] in a unit of u or v
+uniform float u_blood_bump;
 #endif
 #ifdef BLOOD_HEIGHT
 uniform sampler2D u_blood_height;  // [mm]
@@ -125,11 +125,11 @@ void main() {
     steepness *= 1.0 - 0.5 * wet;
 #endif
     vec2 slopes = steepness * textureLod(u_slopes, u_bump_repeat * v_picture_uv, 0.0).rg;
-    normal = bumped(normal, px, py, vec2(dot(slopes, dFdx(v_picture_uv)), dot(slopes, dFdy(v_picture_uv))));
+    normal = bumped(normal, px, py, rise_of(slopes, px, py, dFdx(v_picture_uv), dFdy(v_picture_uv)));
 #endif
 #ifdef BLOOD_NORMAL
     vec2 blood_slopes = side * u_blood_bump * slopes_of(textureLod(u_blood_normal, v_uv, 0.0).xyz);
-    normal = bumped(normal, px, py, vec2(dot(blood_slopes, dFdx(v_uv)), dot(blood_slopes, dFdy(v_uv))));
+    normal = bumped(normal, px, py, rise_of(blood_slopes, px, py, dFdx(v_uv), dFdy(v_uv)));
 #endif
 #ifdef BLOOD_HEIGHT
     vec2 texels = vec2(textureSize(u_blood_height, 0));

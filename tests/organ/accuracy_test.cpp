@@ -76,19 +76,7 @@ class OrganAccuracy : public testing::Test {
             }
         }
         s.organ.slopes = {.picture = slopes, .repeats = true, .repeat = repeat};
-        s.organ.bump_mm = strength * mm_per_uv();
-    }
-    /// Root of the ratio of the patch's area to that of its texture.
-    double mm_per_uv() {
-        (void)s.render();
-        (void)s.expected();
-        double area = 0.0;
-        for (std::size_t i = 0; i < s.organ.indices.size(); i += 3) {
-            const glm::dvec3& a = s.organ.positions[s.organ.indices[i]];
-            area += 0.5 * glm::length(glm::cross(s.organ.positions[s.organ.indices[i + 1]] - a,
-                                                 s.organ.positions[s.organ.indices[i + 2]] - a));
-        }
-        return std::sqrt(area);
+        s.organ.bump = strength;
     }
     void use_energy() {
         feed("tissue.energy", s.organ.energy,
@@ -174,7 +162,7 @@ TEST_F(OrganAccuracy, BloodWithItsNormal) {
         const std::array<double, 4> n{0.2 * std::sin(8.0 * u), 0.25 * std::cos(6.0 * v), 0.95, 0.0};
         return static_cast<float>(n[static_cast<std::size_t>(c)]);
     });
-    s.organ.blood_bump_mm = 1.5 * mm_per_uv();
+    s.organ.blood_bump = 1.5;
     s.parameters["blood"] = {{"bump", 1.5}};
     expect("blood with its normal");
 }
@@ -183,7 +171,7 @@ TEST_F(OrganAccuracy, BloodWithItsHeight) {
     feed("tissue.blood_color", s.organ.blood);
     feed("tissue.blood_height", s.organ.blood_height,
          [](double u, double v, int) { return static_cast<float>(0.8 + 0.8 * std::sin(7.0 * u) * v); });
-    s.organ.blood_bump_mm = 0.7;
+    s.organ.blood_bump = 0.7;
     s.parameters["blood"] = {{"bump", 0.7}};
     expect("blood with its height");
 }
@@ -315,7 +303,6 @@ TEST_F(OrganAccuracy, EverythingAtOnce) {
         const std::array<double, 4> n{0.2 * std::sin(8.0 * u), 0.25 * std::cos(6.0 * v), 0.95, 0.0};
         return static_cast<float>(n[static_cast<std::size_t>(c)]);
     });
-    s.organ.blood_bump_mm = s.organ.bump_mm / 0.4;
     s.parameters["cut"] = {{"map", file("cut.exr", s.organ.cut_map, [](double u, double v, int c) {
                                 return c == 3 ? static_cast<float>(u + v < 0.6 ? 1.0 : 0.0) : wave(v, u, c);
                             })}};

@@ -28,7 +28,7 @@ std::string patch_obj(const PatchOptions& o) {
                                     o.bend_mm * k * std::cos(k * x) * std::sin(k * z));
             const glm::dvec3 n = glm::normalize(normal);
             obj << "vn " << n.x << ' ' << n.y << ' ' << n.z << '\n';
-            const double a = (o.mirrored_uv ? -1.0 : 1.0) * (s - 0.5) * o.uv_scale;
+            const double a = (o.mirrored_uv ? -1.0 : 1.0) * (s - 0.5) * o.uv_scale * o.uv_stretch;
             const double b = (t - 0.5) * o.uv_scale;
             obj << "vt " << 0.5 + std::cos(turn) * a - std::sin(turn) * b << ' '
                 << 0.5 + std::sin(turn) * a + std::cos(turn) * b << '\n';

@@ -22,6 +22,7 @@ struct PatchOptions {
     double bend_mm = 9.0;
     double uv_turn_deg = 0.0;  ///< texture coordinates turned about their middle
     double uv_scale = 1.0;     ///< < 1 keeps turned ones within the texture
+    double uv_stretch = 1.0;   ///< of u alone, before the turn
     bool mirrored_uv = false;
 };
 /// As an OBJ file.

@@ -117,18 +117,23 @@ Shaded shade(const Organ& organ, const Plane& plane, int x, int y) {
     const glm::dvec3 py = glm::dmat3(organ.view) * plane.along_y(organ.positions, x, y);
     const glm::dvec2 ux = plane.along_x(organ.uvs, x, y);
     const glm::dvec2 uy = plane.along_y(organ.uvs, x, y);
+    // Slopes [mm/mm] along dP/du and dP/dv as rises per unit of u and of v.
+    const double det = ux.x * uy.y - ux.y * uy.x;
+    const glm::dvec2 mm_per_unit(glm::length(px * uy.y - py * ux.y) / std::abs(det),
+                                 glm::length(py * ux.x - px * uy.x) / std::abs(det));
     const auto rise = [&](const glm::dvec2& slopes) {
         return side * glm::dvec2(glm::dot(slopes, ux), glm::dot(slopes, uy));
     };
     if (!organ.slopes.empty()) {
-        const double strength = organ.bump_mm * (1.0 + organ.bump_gain * burn.coagulated) * (1.0 - 0.5 * wet);
-        normal = bumped(normal, px, py,
-                        rise(strength * glm::dvec2(organ.slopes.at(uv, 0), organ.slopes.at(uv, 1))));
+        const double strength = organ.bump * (1.0 + organ.bump_gain * burn.coagulated) * (1.0 - 0.5 * wet);
+        normal =
+            bumped(normal, px, py,
+                   rise(strength * mm_per_unit * glm::dvec2(organ.slopes.at(uv, 0), organ.slopes.at(uv, 1))));
     }
     if (!organ.blood_normal.empty()) {
         const glm::dvec3 n = sample3(organ.blood_normal, uv);
         const glm::dvec2 slopes = n.z > 1e-3 ? -glm::dvec2(n) / n.z : glm::dvec2(0.0);
-        normal = bumped(normal, px, py, rise(organ.blood_bump_mm * slopes));
+        normal = bumped(normal, px, py, rise(organ.blood_bump * mm_per_unit * slopes));
     }
     if (!organ.blood_height.empty()) {
         const glm::dvec2 texels(organ.blood_height.picture.width, organ.blood_height.picture.height);
@@ -137,7 +142,7 @@ Shaded shade(const Organ& organ, const Plane& plane, int x, int y) {
         };
         const glm::dvec2 slopes =
             0.5 * texels * glm::dvec2(difference({1.0 / texels.x, 0.0}), difference({0.0, 1.0 / texels.y}));
-        normal = bumped(normal, px, py, rise(organ.blood_bump_mm * slopes));
+        normal = bumped(normal, px, py, rise(organ.blood_bump * slopes));
     }
 
     glm::dvec3 scattered(0.0);

@@ -63,7 +63,7 @@ struct Organ {
 
     glm::dvec3 colour{1.0};
     OrganMap diffuse;
-    OrganMap slopes;  ///< dH/du, dH/dv on a surface on which u and v are lengths
+    OrganMap slopes;  ///< [mm/mm] along dP/du and dP/dv
     OrganMap energy;
     OrganMap blood;
     OrganMap blood_normal;
@@ -71,8 +71,8 @@ struct Organ {
     OrganMap cut_map;
     OrganMap hint;
 
-    double bump_mm = 1.0;        ///< strength times mm in a unit of u or v
-    double blood_bump_mm = 1.0;  ///< the same for blood_normal; for blood_height a factor
+    double bump = 1.0;        ///< factor on slopes
+    double blood_bump = 1.0;  ///< of blood_normal or blood_height
     double bump_gain = 10.0;
     glm::dvec3 coagulation_colour{1.0};
     double saturation = 1.0;
