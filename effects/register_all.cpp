@@ -53,6 +53,12 @@ void register_all(Registry& registry) {
                  [] { return std::make_unique<volume::LimitsEffect>(volume::LimitsEffect::Side::entry); });
     registry.add("volume.exit", "Where rays leave a volume, for volume.ray_cast.",
                  [] { return std::make_unique<volume::LimitsEffect>(volume::LimitsEffect::Side::exit); });
+    registry.add("volume.inner_entry", "Where rays enter a volume's mesh for the last time.", [] {
+        return std::make_unique<volume::LimitsEffect>(volume::LimitsEffect::Side::inner_entry);
+    });
+    registry.add("volume.inner_exit", "Where rays leave a volume's mesh for the first time.", [] {
+        return std::make_unique<volume::LimitsEffect>(volume::LimitsEffect::Side::inner_exit);
+    });
     registry.add("volume.slice", "A volume's values on a plane or a mesh that cuts it.",
                  [] { return std::make_unique<volume::SliceEffect>(); });
     registry.add("mesh.surface", "Opaque meshes, with their depth.",

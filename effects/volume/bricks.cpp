@@ -6,6 +6,7 @@
 #include <limits>
 #include <string>
 #include <type_traits>
+#include <utility>
 
 #include "engine/core/error.h"
 
@@ -31,9 +32,10 @@ void widen(std::size_t count, const T* smaller, const T* greater, T* low, T* hig
     }
 }
 
-/// One channel of `row.size()` voxels that lie side by side from `first` on.
+/// One channel of `row.size()` voxels that lie side by side from `first` on, all of them in the volume.
 template <typename T>
-void load_row(const Volume& volume, const glm::ivec3& first, int channel, float empty, std::vector<T>& row) {
+void load_inside(const Volume& volume, const glm::ivec3& first, int channel, float empty,
+                 std::vector<T>& row) {
     const auto channels = static_cast<std::size_t>(volume.channels);
     const std::byte* source =
         volume.voxels.data() +
@@ -52,16 +54,50 @@ void load_row(const Volume& volume, const glm::ivec3& first, int channel, float 
     }
 }
 
+int on_ring(int voxel, int count) {
+    const int rest = voxel % count;
+    return rest < 0 ? rest + count : rest;
+}
+
+/// The same, where the ring along `ring` (-1: none) goes on beyond the volume. `whole`: room for a line of x.
+template <typename T>
+void load_row(const Volume& volume, glm::ivec3 first, int ring, int channel, float empty,
+              std::vector<T>& whole, std::vector<T>& row) {
+    const int nx = volume.grid.dims.x;
+    if (ring > 0) {
+        first[ring] = on_ring(first[ring], volume.grid.dims[ring]);
+    }
+    if (ring != 0 || (first.x >= 0 && first.x + static_cast<int>(row.size()) <= nx)) {
+        return load_inside(volume, first, channel, empty, row);
+    }
+    whole.resize(static_cast<std::size_t>(nx));
+    load_inside(volume, {0, first.y, first.z}, channel, empty, whole);
+    for (std::size_t i = 0; i < row.size(); ++i) {
+        row[i] = whole[static_cast<std::size_t>(on_ring(first.x + static_cast<int>(i), nx))];
+    }
+}
+
 /// Ranges of the bricks of a box, axis by axis: slices of a layer into a plane, lines of the plane into a
 /// line, voxels of the line into bricks.
 template <typename T>
 void summarise_as(BrickGrid& bricks, const Volume& volume, int channel, float empty, const VoxelBox& box,
-                  const Progress& progress) {
+                  const glm::ivec3& border, const Progress& progress) {
+    const int ring = bricks.rows.wrap ? bricks.rows.angle_axis : -1;
     const auto first_voxel = [&](const glm::ivec3& brick) {
-        return glm::max(brick * bricks.size - bricks.border, glm::ivec3(0));
+        const glm::ivec3 first = brick * bricks.size - border;
+        glm::ivec3 inside = glm::max(first, glm::ivec3(0));
+        if (ring >= 0) {
+            inside[ring] = first[ring];
+        }
+        return inside;
     };
     const auto end_voxel = [&](const glm::ivec3& brick) {
-        return glm::min((brick + 1) * bricks.size + bricks.border, volume.grid.dims);
+        const glm::ivec3 end = glm::min((brick + 1) * bricks.size, volume.grid.dims) + border;
+        glm::ivec3 inside = glm::min(end, volume.grid.dims);
+        if (ring >= 0) {
+            inside[ring] = end[ring];
+        }
+        return inside;
     };
     const glm::ivec3 end_brick = box.first + box.size;
     const glm::ivec3 first = first_voxel(box.first);
@@ -71,18 +107,19 @@ void summarise_as(BrickGrid& bricks, const Volume& volume, int channel, float em
     constexpr T greatest = std::numeric_limits<T>::max();
     constexpr T least = std::numeric_limits<T>::lowest();
     std::vector<T> row(width);
+    std::vector<T> whole;
     std::vector<T> plane_low(area);
     std::vector<T> plane_high(area);
     std::vector<T> line_low(width);
     std::vector<T> line_high(width);
 
-    glm::ivec3 brick;
+    glm::ivec3 brick = box.first;
     for (brick.z = box.first.z; brick.z < end_brick.z; ++brick.z) {
         std::fill(plane_low.begin(), plane_low.end(), greatest);
         std::fill(plane_high.begin(), plane_high.end(), least);
         for (int z = first_voxel(brick).z; z < end_voxel(brick).z; ++z) {
             for (int y = first.y; y < end.y; ++y) {
-                load_row(volume, {first.x, y, z}, channel, empty, row);
+                load_row(volume, {first.x, y, z}, ring, channel, empty, whole, row);
                 const std::size_t begin = width * static_cast<std::size_t>(y - first.y);
                 widen(width, row.data(), row.data(), &plane_low[begin], &plane_high[begin]);
             }
@@ -111,18 +148,18 @@ void summarise_as(BrickGrid& bricks, const Volume& volume, int channel, float em
 }
 
 void summarise_box(BrickGrid& bricks, const Volume& volume, int channel, float empty, const VoxelBox& box,
-                   const Progress& progress) {
+                   const glm::ivec3& border, const Progress& progress) {
     switch (volume.type) {
         case ScalarType::u8:
-            return summarise_as<std::uint8_t>(bricks, volume, channel, empty, box, progress);
+            return summarise_as<std::uint8_t>(bricks, volume, channel, empty, box, border, progress);
         case ScalarType::i8:
-            return summarise_as<std::int8_t>(bricks, volume, channel, empty, box, progress);
+            return summarise_as<std::int8_t>(bricks, volume, channel, empty, box, border, progress);
         case ScalarType::u16:
-            return summarise_as<std::uint16_t>(bricks, volume, channel, empty, box, progress);
+            return summarise_as<std::uint16_t>(bricks, volume, channel, empty, box, border, progress);
         case ScalarType::i16:
-            return summarise_as<std::int16_t>(bricks, volume, channel, empty, box, progress);
+            return summarise_as<std::int16_t>(bricks, volume, channel, empty, box, border, progress);
         case ScalarType::f32:
-            return summarise_as<float>(bricks, volume, channel, empty, box, progress);
+            return summarise_as<float>(bricks, volume, channel, empty, box, border, progress);
     }
 }
 
@@ -223,8 +260,9 @@ static_assert(2 * DistanceGrid::margin_x > distance_reach);
 
 }  // namespace
 
-BrickGrid summarise(const Volume& volume, int channel, int size, int border, float empty,
-                    const Progress& progress) {
+namespace {
+
+void check(const Volume& volume, int channel, int size, int border) {
     if (channel < 0 || channel >= volume.channels) {
         throw Error(ErrorCode::usage, volume.source, "there is no channel " + std::to_string(channel));
     }
@@ -232,11 +270,72 @@ BrickGrid summarise(const Volume& volume, int channel, int size, int border, flo
         throw Error(ErrorCode::usage, volume.source,
                     "bricks need a size of 1 or more and no negative border");
     }
+}
+
+BrickGrid grid_of(const Volume& volume, int size, int border) {
     BrickGrid bricks{.dims = (volume.grid.dims + size - 1) / size, .size = size, .border = border};
     const std::size_t count = at(bricks.dims - 1, bricks.dims) + 1;
     bricks.min.resize(count);
     bricks.max.resize(count);
-    summarise_box(bricks, volume, channel, empty, {glm::ivec3(0), bricks.dims}, progress);
+    return bricks;
+}
+
+/// Calls visit(bricks of the row, its border) for each row.
+template <class Visit>
+void each_row(const BrickGrid& bricks, const Visit& visit) {
+    const glm::ivec3 n = bricks.dims;
+    std::size_t row = 0;
+    if (bricks.rows.angle_axis == 1) {
+        for (int x = 0; x < n.x; ++x) {
+            visit(VoxelBox{{x, 0, 0}, {1, n.y, n.z}}, bricks.rows.borders.at(row++));
+        }
+        return;
+    }
+    for (int z = 0; z < n.z; ++z) {
+        for (int y = 0; y < n.y; ++y) {
+            visit(VoxelBox{{0, y, z}, {n.x, 1, 1}}, bricks.rows.borders.at(row++));
+        }
+    }
+}
+
+/// Bricks of a row whose ranges include one of the voxels from `first` to `last`; size 0 where none does.
+VoxelBox touched_of(const BrickGrid& bricks, const VoxelBox& row, const glm::ivec3& border,
+                    const glm::ivec3& first, const glm::ivec3& last, const glm::ivec3& dims) {
+    glm::ivec3 low = glm::max(first - border, glm::ivec3(0)) / bricks.size;
+    glm::ivec3 high = glm::min((last + border) / bricks.size, bricks.dims - 1);
+    const int ring = bricks.rows.wrap ? bricks.rows.angle_axis : -1;
+    if (ring >= 0 && (first[ring] < border[ring] || last[ring] + border[ring] >= dims[ring])) {
+        low[ring] = 0;  // across the seam
+        high[ring] = bricks.dims[ring] - 1;
+    }
+    low = glm::max(low, row.first);
+    high = glm::min(high, row.first + row.size - 1);
+    return glm::any(glm::lessThan(high, low)) ? VoxelBox{} : VoxelBox{low, high - low + 1};
+}
+
+}  // namespace
+
+BrickGrid summarise(const Volume& volume, int channel, int size, int border, float empty,
+                    const Progress& progress) {
+    check(volume, channel, size, border);
+    BrickGrid bricks = grid_of(volume, size, border);
+    summarise_box(bricks, volume, channel, empty, {glm::ivec3(0), bricks.dims}, glm::ivec3(border), progress);
+    return bricks;
+}
+
+BrickGrid summarise(const Volume& volume, int channel, int size, BrickRows rows, float empty,
+                    const Progress& progress) {
+    check(volume, channel, size, 0);
+    BrickGrid bricks = grid_of(volume, size, 0);
+    bricks.rows = std::move(rows);
+    double done = 0.0;
+    each_row(bricks, [&](const VoxelBox& row, const glm::ivec3& border) {
+        summarise_box(bricks, volume, channel, empty, row, border, {});
+        done += 1.0;
+        if (progress && !progress(done / static_cast<double>(bricks.rows.borders.size()))) {
+            throw Error(ErrorCode::usage, volume.source, "cancelled");
+        }
+    });
     return bricks;
 }
 
@@ -246,10 +345,19 @@ VoxelBox resummarise(BrickGrid& bricks, const Volume& volume, int channel, float
     if (glm::any(glm::lessThan(last, first))) {
         return {};
     }
+    if (bricks.rows.angle_axis >= 0) {
+        each_row(bricks, [&](const VoxelBox& row, const glm::ivec3& border) {
+            const VoxelBox touched = touched_of(bricks, row, border, first, last, volume.grid.dims);
+            if (touched.size != glm::ivec3(0)) {
+                summarise_box(bricks, volume, channel, empty, touched, border, {});
+            }
+        });
+        return {glm::ivec3(0), bricks.dims};
+    }
     const glm::ivec3 first_brick = glm::max(first - bricks.border, glm::ivec3(0)) / bricks.size;
     const glm::ivec3 last_brick = glm::min((last + bricks.border) / bricks.size, bricks.dims - 1);
     const VoxelBox touched{first_brick, last_brick - first_brick + 1};
-    summarise_box(bricks, volume, channel, empty, touched, {});
+    summarise_box(bricks, volume, channel, empty, touched, glm::ivec3(bricks.border), {});
     return touched;
 }
 

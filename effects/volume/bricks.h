@@ -10,6 +10,16 @@
 
 namespace viscera::volume {
 
+/// Borders of the bricks of a curvilinear volume. A slab turns through the more voxels the nearer it passes
+/// the axis, so that bricks need wider borders there, all around at the axis itself.
+struct BrickRows {
+    int angle_axis = -1;  ///< 1: a row for each brick along x; 0: for each along y and z; -1: no rows
+    bool wrap = false;    ///< ranges include voxels across the seam along angle_axis
+    std::vector<glm::ivec3> borders;  ///< [voxels], of each row, y faster than z
+
+    bool operator==(const BrickRows&) const = default;
+};
+
 /// Least and greatest stored value over each brick's voxels and a border of the filter's support: bounds of
 /// what a reconstruction filter without overshoot can give inside the brick.
 struct BrickGrid {
@@ -18,6 +28,7 @@ struct BrickGrid {
     int border = 1;      ///< voxels around a brick that its range includes: 1 linear, 2 cubic
     std::vector<float> min;
     std::vector<float> max;
+    BrickRows rows{};  ///< curvilinear: borders that differ from row to row
 
     [[nodiscard]] std::size_t count() const { return min.size(); }
 };
@@ -27,8 +38,11 @@ struct BrickGrid {
 /// there, size < 1 or border < 0, and Error(usage) "cancelled".
 [[nodiscard]] BrickGrid summarise(const Volume& volume, int channel, int size, int border, float empty,
                                   const Progress& progress = {});
-/// Makes again the bricks that a change of `box` touches (border included); gives the box of bricks made
-/// again. The part of the box outside the volume is ignored.
+/// The same with a border for each row of bricks.
+[[nodiscard]] BrickGrid summarise(const Volume& volume, int channel, int size, BrickRows rows, float empty,
+                                  const Progress& progress = {});
+/// Makes again the bricks that a change of `box` touches (border included); gives a box that holds all that
+/// were made again. The part of the box outside the volume is ignored.
 VoxelBox resummarise(BrickGrid& bricks, const Volume& volume, int channel, float empty, const VoxelBox& box);
 
 /// Stored values in which something is to be seen, ascending, ends included.

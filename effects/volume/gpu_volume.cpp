@@ -98,24 +98,28 @@ std::string too_large(const glm::ivec3& dims, Storage storage, const TextureLimi
     return text;
 }
 
-/// A slice with rows and columns of its edge repeated around it.
+/// A slice with rows and columns of its edge repeated around it; along a ring (axis 0 or 1) those of the
+/// other end.
 std::vector<std::byte> bordered(const std::vector<std::byte>& slice, const glm::ivec2& size,
-                                const glm::ivec2& before, const glm::ivec2& behind, std::size_t bytes) {
+                                const glm::ivec2& before, const glm::ivec2& behind, std::size_t bytes,
+                                int ring) {
     std::vector<std::byte> result;
     const glm::ivec2 whole = size + before + behind;
     result.reserve(static_cast<std::size_t>(whole.x) * static_cast<std::size_t>(whole.y) * bytes);
     for (int y = -before.y; y < size.y + behind.y; ++y) {
-        const auto row =
-            static_cast<std::size_t>(std::clamp(y, 0, size.y - 1)) * static_cast<std::size_t>(size.x) * bytes;
+        const int from = ring == 1 ? (y + size.y) % size.y : std::clamp(y, 0, size.y - 1);
+        const auto row = static_cast<std::size_t>(from) * static_cast<std::size_t>(size.x) * bytes;
         const auto first = slice.begin() + static_cast<std::ptrdiff_t>(row);
         const auto texel = static_cast<std::ptrdiff_t>(bytes);
         const auto end = first + size.x * texel;
         if (before.x > 0) {
-            result.insert(result.end(), first, first + texel);
+            const auto beside = ring == 0 ? end - texel : first;
+            result.insert(result.end(), beside, beside + texel);
         }
         result.insert(result.end(), first, end);
         if (behind.x > 0) {
-            result.insert(result.end(), end - texel, end);
+            const auto beside = ring == 0 ? first : end - texel;
+            result.insert(result.end(), beside, beside + texel);
         }
     }
     return result;
@@ -200,10 +204,17 @@ gl::Texture GpuVolume::make_texture(const gl::Functions& gl, const Volume& volum
     return texture;
 }
 
-void GpuVolume::upload(const Volume& volume, const VoxelBox& box, double empty) {
+void GpuVolume::upload(const Volume& volume, const VoxelBox& changed, double empty) {
+    VoxelBox box = changed;
     if (!atlas_) {
         texture_.upload_region(extent(box.first), extent(box.size), texels(volume, channel_, box, empty));
         return;
+    }
+    // Each end of a ring borders on the other.
+    const int ring = volume.grid.shape.wrap_axis();
+    if (ring >= 0) {
+        box.first[ring] = 0;
+        box.size[ring] = dims_[ring];
     }
     // What touches a face goes on into the border.
     const glm::ivec2 before(box.first.x == 0 ? AtlasLayout::border : 0,
@@ -217,7 +228,7 @@ void GpuVolume::upload(const Volume& volume, const VoxelBox& box, double empty) 
         const VoxelBox slice{{box.first.x, box.first.y, z}, {box.size.x, box.size.y, 1}};
         texture_.upload_region(extent(place), {size.x, size.y, 1},
                                bordered(texels(volume, channel_, slice, empty), glm::ivec2(box.size), before,
-                                        behind, texture_.format().bytes_per_pixel));
+                                        behind, texture_.format().bytes_per_pixel, ring));
     }
 }
 

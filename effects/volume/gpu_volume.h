@@ -51,7 +51,7 @@ class GpuVolume {
 
   private:
     [[nodiscard]] gl::Texture make_texture(const gl::Functions& gl, const Volume& volume);
-    void upload(const Volume& volume, const VoxelBox& box, double empty);
+    void upload(const Volume& volume, const VoxelBox& changed, double empty);
 
     int channel_;
     Storage storage_;

@@ -47,6 +47,7 @@ void Segment::visit(ParamVisitor& v) {
 void LabelParams::visit(ParamVisitor& v) {
     v.field({.name = "file", .doc = "Volume of whole numbers, one for each segment."}, file);
     v.field({.name = "host", .doc = "Name of a volume that the host gives, instead of a file."}, host);
+    v.field({.name = "geometry", .doc = "What the file's axes run along, as in volume."}, geometry);
     v.field({.name = "segments", .doc = "What single labels look like."}, segments);
     v.field({.name = "others", .doc = "What all labels that are not listed look like."}, others);
 }

@@ -37,6 +37,7 @@ struct Segment {
 struct LabelParams {
     AssetPath file;
     std::string host;
+    std::optional<GeometryParams> geometry;  ///< of the file, as in SourceParams
     std::vector<Segment> segments;
     SegmentLook others;
 

@@ -42,6 +42,21 @@ std::vector<glm::dvec3> all_around() {
     return directions;
 }
 
+/// Cells along the sides of a box, `resolution` along the longest, no more than `most`.
+glm::ivec3 cells_of(const glm::dmat4& box_to_world, int resolution, const glm::ivec3& most) {
+    glm::dvec3 sides;
+    for (int a = 0; a < 3; ++a) {
+        sides[a] = glm::length(glm::dvec3(box_to_world[a]));
+    }
+    const double longest = std::max({sides.x, sides.y, sides.z});
+    glm::ivec3 dims;
+    for (int a = 0; a < 3; ++a) {
+        dims[a] = std::clamp(static_cast<int>(std::lround(resolution * sides[a] / longest)), 1,
+                             std::min(resolution, most[a]));
+    }
+    return dims;
+}
+
 }  // namespace
 
 void LightVolumeParams::visit(ParamVisitor& v) {
@@ -87,16 +102,8 @@ double ExtinctionGrid::at(const glm::dvec3& texture) const {
 ExtinctionGrid extinction_grid(const Volume& volume, int channel, const glm::dmat4& texture_to_world,
                                int resolution, const std::function<double(double value)>& extinction) {
     const glm::ivec3 voxels = volume.grid.dims;
-    ExtinctionGrid grid{.texture_to_world = texture_to_world};
-    glm::dvec3 sides;
-    for (int a = 0; a < 3; ++a) {
-        sides[a] = glm::length(glm::dvec3(texture_to_world[a]));
-    }
-    const double longest = std::max({sides.x, sides.y, sides.z});
-    for (int a = 0; a < 3; ++a) {
-        grid.dims[a] = std::clamp(static_cast<int>(std::lround(resolution * sides[a] / longest)), 1,
-                                  std::min(resolution, voxels[a]));
-    }
+    ExtinctionGrid grid{.dims = cells_of(texture_to_world, resolution, voxels),
+                        .texture_to_world = texture_to_world};
     each_cell(grid.dims, [&](const glm::ivec3& cell) {
         const glm::ivec3 first = cell * voxels / grid.dims;
         const glm::ivec3 size = (cell + 1) * voxels / grid.dims - first;
@@ -108,6 +115,34 @@ ExtinctionGrid extinction_grid(const Volume& volume, int channel, const glm::dma
             sum += std::isfinite(value) ? extinction(value) : 0.0;
         });
         grid.per_mm.push_back(static_cast<float>(sum / (count.x * count.y * count.z)));
+    });
+    return grid;
+}
+
+ExtinctionGrid extinction_in_box(const Volume& volume, int channel, const glm::dmat4& box_to_world,
+                                 int resolution, const std::function<double(double value)>& extinction) {
+    ExtinctionGrid grid{.dims = cells_of(box_to_world, resolution, glm::ivec3(resolution)),
+                        .texture_to_world = box_to_world};
+    const VolumeGrid& voxels = volume.grid;
+    const glm::dmat4 to_unplaced = voxels.box_to_world();
+    const int ring = voxels.shape.wrap_axis();
+    each_cell(grid.dims, [&](const glm::ivec3& cell) {
+        double sum = 0.0;
+        each_cell(glm::ivec3(2), [&](const glm::ivec3& i) {
+            const glm::dvec3 place = (glm::dvec3(cell) + 0.25 + 0.5 * glm::dvec3(i)) / glm::dvec3(grid.dims);
+            glm::ivec3 voxel =
+                glm::ivec3(glm::floor(voxels.index_of_world(to_unplaced * glm::dvec4(place, 1.0)) + 0.5));
+            if (ring >= 0) {
+                voxel[ring] = (voxel[ring] % voxels.dims[ring] + voxels.dims[ring]) % voxels.dims[ring];
+            }
+            if (glm::any(glm::lessThan(voxel, glm::ivec3(0))) ||
+                glm::any(glm::greaterThanEqual(voxel, voxels.dims))) {
+                return;
+            }
+            const double value = volume.value_of(volume.stored(voxel, channel));
+            sum += std::isfinite(value) ? extinction(value) : 0.0;
+        });
+        grid.per_mm.push_back(static_cast<float>(sum / 8.0));
     });
     return grid;
 }

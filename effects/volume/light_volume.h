@@ -39,6 +39,13 @@ struct ExtinctionGrid {
                                              const glm::dmat4& texture_to_world, int resolution,
                                              const std::function<double(double value)>& extinction);
 
+/// The same for a volume of any shape, over the unit box around it: grid.box_to_world() with the placement.
+/// Each cell averages 2 x 2 x 2 places, each of the voxel that it lies in; beside the volume there is
+/// nothing.
+[[nodiscard]] ExtinctionGrid extinction_in_box(const Volume& volume, int channel,
+                                               const glm::dmat4& box_to_world, int resolution,
+                                               const std::function<double(double value)>& extinction);
+
 /// Share of light that reaches a place (texture coordinates) from the world direction `towards`, of length 1,
 /// from no farther than `reach_mm`: exp of minus the extinction summed in steps of one cell at most, by
 /// midpoints. The length of one cell next to the place is left out, so that surfaces do not darken

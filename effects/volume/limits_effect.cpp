@@ -1,9 +1,11 @@
 #include "effects/volume/limits_effect.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "effects/volume/crop.h"
+#include "effects/volume/sector_mesh.h"
 #include "engine/core/error.h"
 #include "engine/core/hash.h"
 #include "engine/core/log.h"
@@ -81,11 +83,11 @@ double signed_volume6(const MeshData& mesh) {
 
 MeshData mesh_in_local(const AssetPath& file, const std::string& filter, std::optional<double> mm_per_unit,
                        const PlacementParams& placement, const glm::dmat4& local_to_world, Log& log) {
-    MeshData mesh = io::merge(
-        io::load_meshes(file.path, {.scale_mm_per_unit = mm_per_unit, .name_filter = filter}, log));
+    MeshData mesh =
+        io::merge(io::load_meshes(file.path, {.scale_mm_per_unit = mm_per_unit, .name_filter = filter}, log));
     const Bounds bounds = mesh.bounds();
-    const glm::dmat4 to_local = glm::inverse(local_to_world) *
-                                placement_matrix(placement, 0.5 * glm::dvec3(bounds.min + bounds.max));
+    const glm::dmat4 to_local =
+        glm::inverse(local_to_world) * placement_matrix(placement, 0.5 * glm::dvec3(bounds.min + bounds.max));
     for (glm::vec3& position : mesh.positions) {
         position = to_local * glm::dvec4(position, 1.0);
     }
@@ -94,7 +96,7 @@ MeshData mesh_in_local(const AssetPath& file, const std::string& filter, std::op
 
 LimitsEffect::LimitsEffect(Side side)
     : side_(side), programs_{{"volume/limits.vert", "volume/limits.frag", {}}} {
-    if (side == Side::exit) {
+    if (leaves()) {
         programs_.front().defines.emplace_back("EXIT");
     }
 }
@@ -104,28 +106,33 @@ void LimitsEffect::validate() const {
 }
 
 std::vector<Port> LimitsEffect::ports() const {
-    const bool exit = side_ == Side::exit;
+    static constexpr std::array<std::string_view, 4> targets{"volume.entry", "volume.exit",
+                                                             "volume.inner_entry", "volume.inner_exit"};
+    static constexpr std::array<std::string_view, 4> depths{
+        "volume.entry_depth", "volume.exit_depth", "volume.inner_entry_depth", "volume.inner_exit_depth"};
+    const auto side = static_cast<std::size_t>(side_);
     return {{.name = "place",
              .access = Access::write,
-             .target = exit ? "volume.exit" : "volume.entry",
+             .target = std::string(targets.at(side)),
              .doc = "Local coordinates; 1 where a ray passes the face as this side asks, -1 where it passes "
                     "the other way, 0 beside the faces.",
              .format = PixelFormat::rgba32f},
             {.name = "depth",
              .access = Access::write,
-             .target = exit ? "volume.exit_depth" : "volume.entry_depth",
+             .target = std::string(depths.at(side)),
              .doc = "Depth of the face kept.",
              .format = PixelFormat::depth32f,
-             .clear = {exit ? 0.0F : 1.0F, 0.0F, 0.0F, 0.0F}}};
+             .clear = {farthest() ? 0.0F : 1.0F, 0.0F, 0.0F, 0.0F}}};
 }
 
 void LimitsEffect::find_mesh(Prepare& prepare) {
     if (params_.limits_mesh.empty()) {
         const CropBox box = crop_box(params_.crop, grid_.dims);
-        mesh_ = box_mesh(box.low, box.high);
+        mesh_ = space_.shape.curvilinear() ? sector_mesh(space_, space_.coordinates(box.low, box.high))
+                                           : box_mesh(box.low, box.high);
     } else {
         mesh_ = mesh_in_local(params_.limits_mesh, params_.mesh_filter, params_.mm_per_unit,
-                              params_.mesh_placement, local_to_world_, prepare.log());
+                              params_.mesh_placement, space_.local_to_world, prepare.log());
     }
     bounds_ = mesh_.bounds();
     inside_out_ = signed_volume6(mesh_) < 0.0;
@@ -141,14 +148,14 @@ Work LimitsEffect::prepare(Prepare& prepare) {
     if (parameters_key_ != prepare.parameters_key() || !(grid_ == grid)) {
         parameters_key_ = prepare.parameters_key();
         grid_ = grid;
-        local_to_world_ = placed(grid, params_.volume.placement);
-        mesh_key_ = Hash().add(parameters_key_).add(local_to_world_).value();
+        space_ = make_space(grid, params_.volume.placement);
+        mesh_key_ = Hash().add(parameters_key_).add(space_.local_to_world).value();
         mesh_ = {};
-        if (invertible(local_to_world_)) {
+        if (invertible(space_.local_to_world) && !space_.shape.flat()) {
             find_mesh(prepare);
         }
     }
-    if (!invertible(local_to_world_)) {
+    if (!invertible(space_.local_to_world)) {
         return Work::idle("the volume's placement is singular");
     }
     if (mesh_.indices.empty()) {
@@ -156,7 +163,7 @@ Work LimitsEffect::prepare(Prepare& prepare) {
     }
     const View& view = prepare.frame().eye();
     const PixelRect region =
-        project_bounds(bounds_, view.view_projection() * local_to_world_, prepare.size("place"));
+        project_bounds(bounds_, view.view_projection() * space_.local_to_world, prepare.size("place"));
     if (region.empty()) {
         return Work::idle("what limits the rays lies outside the view");
     }
@@ -169,13 +176,18 @@ void LimitsEffect::draw(const Pass& pass) {
         mesh_key_, [&] { return std::make_shared<gl::Mesh>(pass.gl(), mesh_); });
     const View& view = pass.frame().eye();
     const gl::Program& program = pass.use(0);
-    program.set("u_to_clip",
-                glm::mat4(with_far_behind(view, bounds_, local_to_world_) * view.view * local_to_world_));
+    program.set("u_to_clip", glm::mat4(with_far_behind(view, bounds_, space_.local_to_world) * view.view *
+                                       space_.local_to_world));
     gl::RasterState state = gl::depth_tested_state;
-    if (side_ == Side::exit) {
+    if (farthest()) {
         state.depth_test = GL_GREATER;
     }
-    const bool mirrored = view.mirrored != (glm::determinant(glm::dmat3(local_to_world_)) < 0.0);
+    if (side_ == Side::inner_entry) {
+        state.cull = GL_BACK;
+    } else if (side_ == Side::inner_exit) {
+        state.cull = GL_FRONT;
+    }
+    const bool mirrored = view.mirrored != (glm::determinant(glm::dmat3(space_.local_to_world)) < 0.0);
     state.front_face = mirrored != inside_out_ ? GL_CW : GL_CCW;
     pass.raster(state);
     mesh.draw();

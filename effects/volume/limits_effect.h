@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "effects/volume/ray_cast_params.h"
+#include "effects/volume/space.h"
 #include "engine/core/mesh_data.h"
 #include "engine/runtime/effect.h"
 
@@ -33,10 +34,12 @@ struct LimitsParams {
                                      const glm::dmat4& local_to_world, Log& log);
 
 /// Draws where rays enter a volume, or leave it, as pictures of local coordinates: the faces of its box, or
-/// of a closed mesh. Of several faces behind one another the nearest entry and the farthest exit are kept.
+/// of a closed mesh. Of several faces behind one another the nearest entry and the farthest exit are kept;
+/// the inner ones tell apart two passages through a mesh that is not convex.
 class LimitsEffect final : public Effect {
   public:
-    enum class Side { entry, exit };
+    /// inner_exit: where rays leave for the first time; inner_entry: where they enter for the last time.
+    enum class Side { entry, exit, inner_entry, inner_exit };
     explicit LimitsEffect(Side side);
 
     void visit(ParamVisitor& visitor) override { params_.visit(visitor); }
@@ -48,6 +51,9 @@ class LimitsEffect final : public Effect {
 
   private:
     void find_mesh(Prepare& prepare);
+    [[nodiscard]] bool leaves() const { return side_ == Side::exit || side_ == Side::inner_exit; }
+    /// Whether the farthest face is kept, not the nearest.
+    [[nodiscard]] bool farthest() const { return side_ == Side::exit || side_ == Side::inner_entry; }
 
     Side side_;
     std::vector<ProgramDesc> programs_;
@@ -55,7 +61,7 @@ class LimitsEffect final : public Effect {
     std::uint64_t parameters_key_ = 0;
     std::uint64_t mesh_key_ = 0;
     VolumeGrid grid_;
-    glm::dmat4 local_to_world_{1.0};
+    Space space_;
     MeshData mesh_;
     Bounds bounds_;
     bool inside_out_ = false;

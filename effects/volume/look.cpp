@@ -12,11 +12,41 @@ namespace {
 constexpr int gradient_entries = 1024;
 constexpr int overlay_entries = 1024;
 
-SourceParams source_of(const AssetPath& file, const std::string& host) {
+SourceParams source_of(const AssetPath& file, const std::string& host,
+                       const std::optional<GeometryParams>& geometry) {
     SourceParams params;
     params.file = file;
     params.host = host;
+    params.geometry = geometry;
     return params;
+}
+
+/// Boxes may lie anywhere; what is curved must be curved as the volume that is shown.
+void expect_fitting(const Source& source, const VolumeGrid& shown, const char* where) {
+    const VolumeGrid& grid = source.volume().grid;
+    if (grid.curvilinear() && !same_shape(grid, shown)) {
+        throw Error(ErrorCode::scene, where,
+                    source.volume().source + " is " + std::string(to_string(grid.shape.kind)) +
+                        " and has not the shape, origin and direction of the volume that is shown");
+    }
+}
+
+/// Where a second volume lies in programs that show another: see glsl/volume/labels.glsl and overlay.glsl.
+struct Placed {
+    glm::dmat4 from_local{1.0};  ///< local -> texture coordinates of a box
+    bool curved = false;         ///< instead: texture coordinates of the volume -> its own
+    Space::SampleMap map{};
+};
+Placed placed_in(const Volume& other, const Space& space) {
+    const VolumeGrid& grid = other.grid;
+    Placed result;
+    result.curved = grid.curvilinear();
+    if (result.curved) {
+        result.map = between(space.dims, grid.dims, grid.shape.wrap_axis());
+    } else {
+        result.from_local = glm::inverse(grid.texture_to_world()) * space.local_to_unplaced;
+    }
+    return result;
 }
 
 std::uint64_t key_of(const std::shared_ptr<const Source>& source) {
@@ -32,6 +62,12 @@ std::uint64_t key_of(const TransferFunction& function) {
         hash.add(point.gradient).add(point.factor);
     }
     return hash.add(function.reference_length_mm).value();
+}
+
+/// The unit box around a curvilinear volume in its frame -> world, with the placement.
+glm::dmat4 box_to_world(const LookScene& scene) {
+    return scene.space.local_to_world * glm::inverse(scene.space.local_to_unplaced) *
+           scene.source.volume().grid.box_to_world();
 }
 
 /// Linear between knots, constant beyond them; the second knot of a step holds at the step.
@@ -110,11 +146,11 @@ std::vector<std::string> Look::defines(const LookParams& params, const Variant& 
     return names;
 }
 
-std::string_view Look::load(const LookParams& params, Prepare& prepare) {
+std::string_view Look::load(const LookParams& params, const VolumeGrid& shown, Prepare& prepare) {
     if (parameters_key_ != prepare.parameters_key()) {
         parameters_key_ = prepare.parameters_key();
-        label_source_ = source_of(params.labels.file, params.labels.host);
-        overlay_source_ = source_of(params.overlay.file, params.overlay.host);
+        label_source_ = source_of(params.labels.file, params.labels.host, params.labels.geometry);
+        overlay_source_ = source_of(params.overlay.file, params.overlay.host, params.overlay.geometry);
     }
     labels_ = nullptr;
     overlay_ = nullptr;
@@ -123,12 +159,14 @@ std::string_view Look::load(const LookParams& params, Prepare& prepare) {
         if (!labels_) {
             return "the host gives no label volume of this name";
         }
+        expect_fitting(*labels_, shown, "/labels");
     }
     if (params.overlay.used()) {
         overlay_ = load_source(prepare.assets(), overlay_source_, prepare.frame());
         if (!overlay_) {
             return "the host gives no overlay of this name";
         }
+        expect_fitting(*overlay_, shown, "/overlay");
     }
     return {};
 }
@@ -196,13 +234,15 @@ void Look::bind_labels(const LookParams& params, const LookScene& scene, const P
         label_ramps_.key = ramps_key;
     }
     // Labels follow the volume's placement: both lie in one unplaced world.
-    const glm::dmat4 to_index =
-        glm::inverse(labels.grid.texture_to_world()) * scene.source.volume().grid.texture_to_world();
+    const Placed place = placed_in(labels, scene.space);
     glm::dmat4 to_voxels(1.0);
     for (int a = 0; a < 3; ++a) {
         to_voxels[a][a] = n[a];
     }
-    program.set("u_labels_from_local", glm::mat4(to_voxels * to_index));
+    program.set("u_labels_from_local", glm::mat4(to_voxels * place.from_local));
+    program.set("u_labels_curved", place.curved);
+    program.set("u_labels_scale", glm::vec3(place.map.scale * glm::dvec3(n)));
+    program.set("u_labels_offset", glm::vec3(place.map.offset * glm::dvec3(n)));
     pass.bind(program, "u_labels", *label_voxels_.texture, gl::Filter::nearest);
     pass.bind(program, "u_label_looks", *label_looks_.texture, gl::Filter::nearest);
     if (params.labels.has_ramps()) {
@@ -228,11 +268,15 @@ void Look::bind_overlay(const LookParams& params, const LookScene& scene, const 
                           map.place.x * overlay.value_of(gpu.map().offset) + map.place.y};
         overlay_map_.key = map_key;
     }
-    program.set("u_overlay_from_local", glm::mat4(glm::inverse(overlay.grid.texture_to_world()) *
-                                                  scene.source.volume().grid.texture_to_world()));
+    const Placed place = placed_in(overlay, scene.space);
+    program.set("u_overlay_from_local", glm::mat4(place.from_local));
+    program.set("u_overlay_curved", place.curved);
+    program.set("u_overlay_scale", glm::vec3(place.map.scale));
+    program.set("u_overlay_offset", glm::vec3(place.map.offset));
     program.set("u_overlay_place", glm::vec2(overlay_place_));
     program.set("u_overlay_strength", static_cast<float>(params.overlay.strength));
-    pass.bind(program, "u_overlay", gpu.texture(), gl::Filter::linear);
+    pass.bind(program, "u_overlay", gpu.texture(), gl::Filter::linear,
+              overlay.grid.shape.wrap ? gl::Wrap::repeat : gl::Wrap::clamp);
     pass.bind(program, "u_overlay_map", *overlay_map_.texture, gl::Filter::nearest);
 }
 
@@ -259,6 +303,7 @@ void Look::bind_gradient(const LookScene& scene, const Pass& pass, const gl::Pro
 void Look::bind_light(const LookParams& params, const LookScene& scene, const Pass& pass,
                       const gl::Program& program) {
     const LightVolumeParams& how = params.shading.light_volume;
+    const bool curved = scene.space.shape.curvilinear();
     const glm::dvec4 light = params.shading.lights.empty()
                                  ? glm::dvec4(0.0, 0.0, 1.0, 0.0)
                                  : params.shading.lights.front().place(pass.frame().eye());
@@ -266,7 +311,7 @@ void Look::bind_light(const LookParams& params, const LookScene& scene, const Pa
                                   .add(key_of(scene.function))
                                   .add(scene.source.key)
                                   .add(scene.source.version())
-                                  .add(scene.local_to_world)
+                                  .add(scene.space.local_to_world)
                                   .add(how.shadow)
                                   .add(how.ambient_occlusion)
                                   .add(how.resolution)
@@ -274,28 +319,35 @@ void Look::bind_light(const LookParams& params, const LookScene& scene, const Pa
                                   .add(how.shadow > 0.0 ? light : glm::dvec4(0.0))
                                   .value();
     if (light_.key != key) {
-        const ExtinctionGrid grid = extinction_grid(
-            scene.source.volume(), scene.channel, scene.local_to_world, how.resolution, [&](double value) {
-                return extinction(evaluate(scene.function, value).w, scene.function.reference_length_mm);
-            });
+        const auto of_value = [&](double value) {
+            return extinction(evaluate(scene.function, value).w, scene.function.reference_length_mm);
+        };
+        const ExtinctionGrid grid =
+            curved ? extinction_in_box(scene.source.volume(), scene.channel, box_to_world(scene),
+                                       how.resolution, of_value)
+                   : extinction_grid(scene.source.volume(), scene.channel, scene.space.local_to_world,
+                                     how.resolution, of_value);
         light_.texture.emplace(gl::Texture::make_3d(pass.gl(), {grid.dims.x, grid.dims.y, grid.dims.z},
                                                     gl::texture_format(PixelFormat::rg32f), "light volume"));
         const std::vector<glm::vec2> texels = light_volume(grid, how, light);
         light_.texture->upload(std::as_bytes(std::span(texels)));
         light_.key = key;
     }
-    program.set("u_light_volume_from_local", glm::mat4(1.0F));
+    program.set(
+        "u_light_volume_from_local",
+        curved ? glm::mat4(glm::inverse(box_to_world(scene)) * scene.space.local_to_world) : glm::mat4(1.0F));
     pass.bind(program, "u_light_volume", *light_.texture, gl::Filter::linear);
 }
 
 void Look::bind(const LookParams& params, const Variant& variant, const LookScene& scene, const Pass& pass,
                 const gl::Program& program) {
     if (variant.shaded) {
-        params.shading.set(program, scene.function, pass.frame().eye(), scene.local_to_world,
+        params.shading.set(program, scene.function, pass.frame().eye(), scene.space.local_to_world,
                            scene.value_of_texel.scale > 0.0);
     }
     if (variant.shaded || variant.by_gradient) {
-        program.set("u_metric", glm::mat3(glm::transpose(glm::inverse(glm::dmat3(scene.local_to_world)))));
+        program.set("u_metric",
+                    glm::mat3(glm::transpose(glm::inverse(glm::dmat3(scene.space.local_to_world)))));
     }
     if (variant.by_gradient) {
         bind_gradient(scene, pass, program);

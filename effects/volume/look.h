@@ -10,6 +10,7 @@
 #include "effects/volume/labels.h"
 #include "effects/volume/overlay.h"
 #include "effects/volume/shading.h"
+#include "effects/volume/space.h"
 #include "effects/volume/transfer_params.h"
 #include "engine/runtime/pass.h"
 
@@ -43,7 +44,7 @@ struct LookScene {
     const Source& source;
     int channel;
     const TransferFunction& function;
-    glm::dmat4 local_to_world;  ///< with the placement, which labels and overlay follow
+    const Space& space;  ///< with the placement, which labels and overlay follow
     TexelMap value_of_texel;
     TexelRange range;  ///< [texel]
     int entries;       ///< of tables over the range
@@ -61,8 +62,8 @@ class Look {
     [[nodiscard]] static std::vector<std::string> defines(const LookParams& params, const Variant& variant);
 
     /// Loads what the parameters name. Reason to draw nothing: a volume that the host does not give; else
-    /// empty.
-    [[nodiscard]] std::string_view load(const LookParams& params, Prepare& prepare);
+    /// empty. Throws Error(scene) for a curvilinear one whose shape is not that of the volume that is shown.
+    [[nodiscard]] std::string_view load(const LookParams& params, const VolumeGrid& shown, Prepare& prepare);
     /// Of labels and overlay, for Work.
     [[nodiscard]] std::uint64_t key() const;
     /// Adds what labels with transfer functions of their own show.

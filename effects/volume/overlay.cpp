@@ -10,6 +10,7 @@ namespace viscera::volume {
 void OverlayParams::visit(ParamVisitor& v) {
     v.field({.name = "file", .doc = "Volume that gives the hue; its place in the world is its own."}, file);
     v.field({.name = "host", .doc = "Name of a volume that the host gives, instead of a file."}, host);
+    v.field({.name = "geometry", .doc = "What the file's axes run along, as in volume."}, geometry);
     v.field({.name = "points",
              .doc = "Colours over its value; opacity is the share of the strength. Default: blue over green "
                     "to red, over the window or all values."},

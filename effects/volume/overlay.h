@@ -6,6 +6,7 @@
 
 #include <glm/glm.hpp>
 
+#include "effects/volume/geometry.h"
 #include "engine/core/params.h"
 #include "engine/core/transfer_function.h"
 
@@ -15,8 +16,9 @@ namespace viscera::volume {
 struct OverlayParams {
     AssetPath file;
     std::string host;
-    std::vector<TransferPoint> points;  ///< none: blue over green to red
-    std::optional<WindowLevel> window;  ///< the values that the points are stretched to
+    std::optional<GeometryParams> geometry;  ///< of the file, as in SourceParams
+    std::vector<TransferPoint> points;       ///< none: blue over green to red
+    std::optional<WindowLevel> window;       ///< the values that the points are stretched to
     double strength = 1.0;
 
     void visit(ParamVisitor& v);

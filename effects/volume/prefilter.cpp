@@ -51,6 +51,60 @@ void solve(std::span<const double> factors, std::size_t width, double* rows) {
     }
 }
 
+/// Solves lines whose ends are neighbours. The two corners of that matrix are taken off as a product of two
+/// vectors (Sherman and Morrison): a line more to solve, once.
+class RingSolver {
+  public:
+    explicit RingSolver(int n) : n_(static_cast<std::size_t>(n)) {
+        if (n < 3) {
+            return;  // solved directly
+        }
+        // A' = A - u v^T, u = (-4, 0, .., 0, 1), v = (1, 0, .., 0, -1/4): tridiagonal with the diagonal 8, 4,
+        // .., 4, 4 + 1/4.
+        factors_.resize(n_);
+        double before = 0.0;
+        for (std::size_t i = 0; i < n_; ++i) {
+            const double diagonal = i == 0 ? 8.0 : (i == n_ - 1 ? 4.25 : 4.0);
+            before = 1.0 / (diagonal - before);
+            factors_[i] = before;
+        }
+        correction_.assign(n_, 0.0);
+        correction_.front() = -4.0 / 6.0;  // solve() multiplies by 6
+        correction_.back() = 1.0 / 6.0;
+        solve(factors_, 1, correction_.data());
+        share_ = 1.0 / (1.0 + correction_.front() - 0.25 * correction_.back());
+    }
+
+    void operator()(std::size_t width, double* rows) const {
+        if (n_ == 1) {
+            return;  // (1 + 4 + 1) / 6: itself
+        }
+        if (n_ == 2) {  // each is both neighbours of the other: (4 a + 2 b) / 6
+            for (std::size_t x = 0; x < width; ++x) {
+                const double a = rows[x];
+                const double b = rows[width + x];
+                rows[x] = 2.0 * a - b;
+                rows[width + x] = 2.0 * b - a;
+            }
+            return;
+        }
+        solve(factors_, width, rows);
+        const double* const last = rows + (n_ - 1) * width;
+        for (std::size_t x = 0; x < width; ++x) {
+            const double off = (rows[x] - 0.25 * last[x]) * share_;
+            for (std::size_t i = 0; i < n_; ++i) {
+                rows[i * width + x] -= off * correction_[i];
+            }
+        }
+    }
+
+  private:
+    std::size_t n_;
+    std::vector<double> factors_;
+    std::vector<double> correction_;
+    double share_ = 0.0;
+};
+
 /// Calls work(begin, end) for parts of [0, count) on several threads.
 template <class Work>
 void in_parts(int count, int threads, const Work& work) {
@@ -122,6 +176,7 @@ std::vector<std::byte> all_coefficients(Assets& assets, const Source& source, in
                                          .add(volume.channels)
                                          .add(channel)
                                          .add(empty)
+                                         .add(volume.grid.shape.wrap_axis())
                                          .add(content_hash(volume.voxels))
                                          .value()
                                    : 0;
@@ -134,7 +189,8 @@ std::vector<std::byte> all_coefficients(Assets& assets, const Source& source, in
     std::vector<float> values = stored_values(volume, channel, {glm::ivec3(0), dims}, empty);
     if (!make_coefficients(
             dims, values, 0,
-            assets.progress("prefiltering " + std::filesystem::path(volume.source).filename().string()))) {
+            assets.progress("prefiltering " + std::filesystem::path(volume.source).filename().string()),
+            volume.grid.shape.wrap_axis())) {
         throw Error(ErrorCode::usage, volume.source, "cancelled");
     }
     const auto bytes = std::as_bytes(std::span(values));
@@ -176,11 +232,16 @@ void follow(Assets& assets, Coefficients& coefficients, const Source& voxels, in
             coefficients.live->replace(std::move(made));
         }
     }
-    for (const VoxelBox& box : changed) {
+    for (VoxelBox box : changed) {
+        const int ring = volume.grid.shape.wrap_axis();
+        if (ring >= 0) {
+            box.first[ring] = 0;
+            box.size[ring] = dims[ring];
+        }
         const VoxelBox reached = grown(box, reach, dims);
         const VoxelBox needed = grown(box, 2 * reach, dims);
         std::vector<float> values = stored_values(volume, channel, needed, empty);
-        static_cast<void>(make_coefficients(needed.size, values));  // a few voxels: nobody waits
+        static_cast<void>(make_coefficients(needed.size, values, 0, {}, ring));  // a few voxels: nobody waits
         values = cut_out(values, needed, reached);
         coefficients.live->update(reached, std::as_bytes(std::span(values)));
     }
@@ -191,14 +252,15 @@ void follow(Assets& assets, Coefficients& coefficients, const Source& voxels, in
 
 }  // namespace
 
-bool make_coefficients(const glm::ivec3& dims, std::span<float> voxels, int threads,
-                       const Progress& progress) {
+bool make_coefficients(const glm::ivec3& dims, std::span<float> voxels, int threads, const Progress& progress,
+                       int ring) {
     const auto nx = static_cast<std::size_t>(dims.x);
     const auto ny = static_cast<std::size_t>(dims.y);
     const auto nz = static_cast<std::size_t>(dims.z);
     const std::vector<double> along_x = elimination(dims.x);
     const std::vector<double> along_y = elimination(dims.y);
     const std::vector<double> along_z = elimination(dims.z);
+    const RingSolver around(ring == 0 ? dims.x : dims.y);
     // The calling thread does the first part, and as fast as it the others do theirs.
     std::atomic<bool> stopped{false};
     const auto goes_on = [&](int begin, int at, int end, double done_before) {
@@ -213,9 +275,9 @@ bool make_coefficients(const glm::ivec3& dims, std::span<float> voxels, int thre
             float* slice = voxels.data() + static_cast<std::size_t>(z) * nx * ny;
             std::copy(slice, slice + nx * ny, plane.begin());
             for (std::size_t y = 0; y < ny; ++y) {
-                solve(along_x, 1, plane.data() + y * nx);
+                ring == 0 ? around(1, plane.data() + y * nx) : solve(along_x, 1, plane.data() + y * nx);
             }
-            solve(along_y, nx, plane.data());
+            ring == 1 ? around(nx, plane.data()) : solve(along_y, nx, plane.data());
             std::transform(plane.begin(), plane.end(), slice, [](double c) { return static_cast<float>(c); });
         }
     });

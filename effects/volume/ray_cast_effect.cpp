@@ -57,6 +57,18 @@ void RayCastEffect::validate() const {
                     "at most " + std::to_string(most_iso_values) + " surfaces");
     }
     params_.look.validate();
+    if (params_.volume.geometry && params_.volume.geometry->kind != VolumeKind::cartesian) {
+        check_kind();
+    }
+}
+
+/// Throws Error(scene) for what only boxes can have.
+void RayCastEffect::check_kind() const {
+    if (params_.sampling.scheme == Scheme::cell) {
+        throw Error(
+            ErrorCode::scene, "/sampling/scheme",
+            "cell goes from face to face of straight cells; those of a curvilinear volume are curved");
+    }
 }
 
 std::vector<Port> RayCastEffect::ports() const {
@@ -78,6 +90,16 @@ std::vector<Port> RayCastEffect::ports() const {
         ports.push_back({.name = "entry", .target = "volume.entry", .doc = "Where rays enter."});
         ports.push_back({.name = "exit", .target = "volume.exit", .doc = "Where rays leave."});
     }
+    if (params_.sampling.limits == Limits::mesh) {
+        ports.push_back({.name = "inner_entry",
+                         .target = "volume.inner_entry",
+                         .doc = "Where rays enter for the last time, for meshes that they may pass twice.",
+                         .optional = true});
+        ports.push_back({.name = "inner_exit",
+                         .target = "volume.inner_exit",
+                         .doc = "Where rays leave for the first time.",
+                         .optional = true});
+    }
     return ports;
 }
 
@@ -96,7 +118,7 @@ void RayCastEffect::find_function(Prepare& prepare) {
     if (wanted == RayFunction::density) {
         function_ = normalised(density_function(function_, params_.density), faults);
     } else if (wanted == RayFunction::accumulate) {
-        const glm::dmat4 box = source_->volume().grid.texture_to_world();
+        const glm::dmat4 box = source_->volume().grid.box_to_world();
         function_ = normalised(
             accumulate_function(params_.accumulate, source_->statistics.min, source_->statistics.max,
                                 glm::length(glm::dvec3(box * glm::dvec4(1, 1, 1, 0)))),
@@ -149,7 +171,7 @@ Work RayCastEffect::prepare(Prepare& prepare) {
     if (changed) {
         find_function(prepare);
         find_crop();
-        texture_to_world_ = placed(volume.grid, params_.volume.placement);
+        space_ = make_space(volume.grid, params_.volume.placement);
         source_version_ = source_->version();
         parameters_key_ = prepare.parameters_key();  // only now: any of the above may fail or be cancelled
     }
@@ -160,19 +182,31 @@ Work RayCastEffect::prepare(Prepare& prepare) {
     if (variant_.function == RayFunction::isosurface && params_.isosurface.values.empty()) {
         return Work::idle("there is no iso value");
     }
-    if (!invertible(texture_to_world_)) {
+    variant_.kind = space_.shape.kind;
+    if (space_.shape.curvilinear()) {
+        check_kind();
+        if (space_.shape.flat()) {
+            prepare.log().fault("volume.flat", volume.source + ": an extent is 0; it is not drawn");
+            return Work::idle("the volume encloses nothing");
+        }
+    }
+    if (!invertible(space_.local_to_world)) {
         prepare.log().fault("volume.singular", "the volume's placement is singular; it is not drawn");
         return Work::idle("the volume's placement is singular");
     }
-    if (const std::string_view missing = look_.load(params_.look, prepare); !missing.empty()) {
+    if (const std::string_view missing = look_.load(params_.look, volume.grid, prepare); !missing.empty()) {
         return Work::idle(missing);
     }
-    const ClippedBox box = clipped_box(box_min_, box_max_, texture_to_world_, params_.look.clip_planes);
+    if (space_.shape.curvilinear() && glm::any(glm::greaterThanEqual(box_min_, box_max_))) {
+        return Work::idle("the crop leaves nothing");
+    }
+    const FrameBox cropped = space_.box_of(box_min_, box_max_);
+    const ClippedBox box =
+        clipped_box(cropped.min, cropped.max, space_.local_to_world, params_.look.clip_planes);
     if (box.empty()) {
         return Work::idle("everything is clipped");
     }
-    lattice_ = make_lattice(params_.sampling, texture_to_world_, volume.grid.dims, prepare.log(),
-                            prepare.frame().quality.step_factor);
+    lattice_ = make_lattice(params_.sampling, space_, prepare.log(), prepare.frame().quality.step_factor);
     if (!find_bricks(prepare)) {
         return Work::idle("nothing of the volume is to be seen");
     }
@@ -181,10 +215,12 @@ Work RayCastEffect::prepare(Prepare& prepare) {
     const glm::ivec2 size = prepare.size("colour");
     variant_.surface = prepare.has("depth");
     variant_.background = prepare.has("background");
+    variant_.inner =
+        params_.sampling.limits == Limits::mesh && prepare.has("inner_entry") && prepare.has("inner_exit");
     if (params_.sampling.limits != Limits::analytic && !prepare.has("exit")) {
         return Work::idle("what limits the rays is not in the view");
     }
-    const PixelRect region = project_bounds(bounds, view.view_projection() * texture_to_world_, size);
+    const PixelRect region = project_bounds(bounds, view.view_projection() * space_.local_to_world, size);
     if (region.empty()) {
         return Work::idle("the volume lies outside the view");
     }
@@ -241,15 +277,13 @@ void RayCastEffect::draw(const Pass& pass) {
     }
     const auto variant = std::ranges::find(variants_, variant_);
     const gl::Program& program = pass.use(static_cast<std::size_t>(variant - variants_.begin()));
-    const RayFrame frame = make_ray_frame(pass.frame().eye(), texture_to_world_);
+    const RayFrame frame = make_ray_frame(pass.frame().eye(), space_.local_to_world, space_.low, space_.high);
     program.set("u_pixel", 2.0F / glm::vec2(pass.size()));
     program.set("u_point", std::span<const glm::vec3>(frame.point));
     program.set("u_direction", std::span<const glm::vec3>(frame.direction));
     program.set("u_world_direction", std::span<const glm::vec3>(frame.world_direction));
     program.set("u_near_far", frame.near_far);
-    program.set("u_box_min", glm::vec3(box_min_));
-    program.set("u_box_max", glm::vec3(box_max_));
-    program.set("u_metric", glm::mat3(glm::transpose(glm::inverse(glm::dmat3(texture_to_world_)))));
+    set_coordinates(program, space_, box_min_, box_max_);
     program.set("u_slab", static_cast<float>(lattice_.slab_mm));
     program.set("u_slab_limit", lattice_.slab_limit);
     program.set("u_voxels", glm::vec3(volume.grid.dims));
@@ -279,18 +313,19 @@ void RayCastEffect::draw(const Pass& pass) {
     }
     gpu.set(program);
     pass.bind(program, "u_volume", gpu.texture(),
-              params_.sampling.reconstruction.texture_filter(function_.nearest));
+              params_.sampling.reconstruction.texture_filter(function_.nearest),
+              space_.shape.wrap && !gpu.is_atlas() ? gl::Wrap::repeat : gl::Wrap::clamp);
     pass.bind(program, "u_transfer", *table_, gl::Filter::nearest);
     if (params_.sub_volume) {
         program.set("u_sub_volume_depth", static_cast<float>(params_.sub_volume->depth_mm));
     }
     if (!params_.look.clip_planes.empty()) {
-        set_clips(program, params_.look.clip_planes, texture_to_world_);
+        set_clips(program, params_.look.clip_planes, space_.local_to_world);
     }
     if (!projects()) {
         look_.bind(params_.look, variant_.look,
-                   {*source_, params_.volume.channel, function_, texture_to_world_,
-                    TexelMap{value_scale, value_offset}, texel_range(map), params_.transfer_function.entries},
+                   {*source_, params_.volume.channel, function_, space_, TexelMap{value_scale, value_offset},
+                    texel_range(map), params_.transfer_function.entries},
                    pass, program);
     }
     if (variant_.skipping != Skipping::none) {
@@ -311,6 +346,10 @@ void RayCastEffect::draw(const Pass& pass) {
     if (params_.sampling.limits != Limits::analytic) {
         pass.bind(program, "u_entry", "entry");
         pass.bind(program, "u_exit", "exit");
+    }
+    if (variant_.inner) {
+        pass.bind(program, "u_inner_entry", "inner_entry");
+        pass.bind(program, "u_inner_exit", "inner_exit");
     }
     if (variant_.compute) {
         pass.dispatch(program, "colour");

@@ -29,11 +29,13 @@ class RayCastEffect final : public Effect {
     enum class Skipping { none, empty, adaptive };
     /// What the programs differ in besides the parameters.
     struct Variant {
+        VolumeKind kind = VolumeKind::cartesian;
         RayFunction function = RayFunction::composite;
         Skipping skipping = Skipping::none;
         Look::Variant look;
         bool surface = false;     ///< rays end at opaque surfaces
         bool background = false;  ///< the picture goes over another
+        bool inner = false;       ///< the mesh that limits rays may be passed twice
         bool atlas = false;       ///< the volume is stored as slices
         bool compute = false;
         bool operator==(const Variant&) const = default;
@@ -46,6 +48,8 @@ class RayCastEffect final : public Effect {
     [[nodiscard]] SmoothRule smooth_rule() const;
     [[nodiscard]] bool find_bricks(Prepare& prepare);
     [[nodiscard]] Bounds seen_bounds(Bounds bounds) const;
+    [[nodiscard]] std::vector<VolumeKind> kinds() const;
+    void check_kind() const;
 
     void find_crop();
     void bind_blue_noise(const Pass& pass, const gl::Program& program);
@@ -65,8 +69,8 @@ class RayCastEffect final : public Effect {
     std::vector<StoredRange> visible_;  ///< what visible() and smooth_rule() gave
     SmoothRule smooth_;
     std::uint64_t visible_key_ = 0;
-    glm::dmat4 texture_to_world_{1.0};
-    glm::dvec3 box_min_{0.0};
+    Space space_;
+    glm::dvec3 box_min_{0.0};  ///< crop, in texture coordinates
     glm::dvec3 box_max_{1.0};
     VoxelBox crop_;
     Lattice lattice_;

@@ -3,6 +3,17 @@
 // Which programs the parameters ask for: one for each thing that only the data or the frame decide.
 namespace viscera::volume {
 
+/// What the volume may be: what the scene says, else what the file or the host turns out to give.
+std::vector<VolumeKind> RayCastEffect::kinds() const {
+    if (params_.volume.geometry) {
+        return {params_.volume.geometry->kind};
+    }
+    if (params_.sampling.scheme == Scheme::cell) {
+        return {VolumeKind::cartesian};
+    }
+    return {VolumeKind::cartesian, VolumeKind::cylindrical, VolumeKind::spherical};
+}
+
 std::span<const ProgramDesc> RayCastEffect::programs() const {
     programs_.clear();
     variants_.clear();
@@ -54,7 +65,7 @@ std::span<const ProgramDesc> RayCastEffect::programs() const {
             program.defines.insert(program.defines.end(), clip.begin(), clip.end());
             if (function != RayFunction::composite) {
                 programs_.push_back(std::move(program));
-                variants_.push_back({function, skipping});
+                variants_.push_back({VolumeKind::cartesian, function, skipping});
                 continue;
             }
             for (const Look::Variant& look : Look::variants(params_.look, params_.transfer_function)) {
@@ -62,7 +73,7 @@ std::span<const ProgramDesc> RayCastEffect::programs() const {
                 programs_.push_back(program);
                 programs_.back().defines.insert(programs_.back().defines.end(), defines.begin(),
                                                 defines.end());
-                variants_.push_back({function, skipping, look});
+                variants_.push_back({VolumeKind::cartesian, function, skipping, look});
             }
         }
     }
@@ -80,6 +91,23 @@ std::span<const ProgramDesc> RayCastEffect::programs() const {
             }
         }
     };
+    if (params_.sampling.limits == Limits::mesh) {
+        again(&Variant::inner, "LIMITS_INNER");
+    }
+    // For each kind of volume that it may be.
+    const std::vector<ProgramDesc> straight = std::move(programs_);
+    const std::vector<Variant> straight_variants = std::move(variants_);
+    programs_.clear();
+    variants_.clear();
+    for (const VolumeKind kind : kinds()) {
+        for (std::size_t i = 0; i < straight.size(); ++i) {
+            programs_.push_back(straight[i]);
+            variants_.push_back(straight_variants[i]);
+            variants_.back().kind = kind;
+            const std::vector<std::string> defines = coordinate_defines(kind);
+            programs_.back().defines.insert(programs_.back().defines.end(), defines.begin(), defines.end());
+        }
+    }
     again(&Variant::surface, "SURFACE");
     again(&Variant::background, "BACKGROUND");
     if (params_.volume.storage != Storage::texture_3d) {

@@ -61,7 +61,7 @@ SmoothRule RayCastEffect::smooth_rule() const {
     const double b = map.texel_of(source_->statistics.max);
     double diagonal_mm = 0.0;
     for (int axis = 0; axis < 3; ++axis) {
-        diagonal_mm += glm::length(glm::dvec3(texture_to_world_[axis]));
+        diagonal_mm += glm::length(glm::dvec3(space_.box_to_world()[axis]));
     }
     return make_smooth_rule(extinction_knots(function_, map, {std::min(a, b), std::max(a, b)}),
                             std::min(a, b), std::max(a, b), diagonal_mm, params_.sampling.tolerance);
@@ -87,9 +87,17 @@ bool RayCastEffect::find_bricks(Prepare& prepare) {
     }
     // A cell or slab belongs to the brick of its middle; reconstruction needs voxels beyond.
     const ReconstructionParams& filter = params_.sampling.reconstruction;
+    BrickRows rows;
     const int border =
         static_cast<int>(std::ceil(reach(params_.sampling, lattice_) + filter.support_voxels()));
-    bricks_ = load_bricks(prepare.assets(), *sampled_, sampled_channel_, brick_size, border);
+    if (space_.shape.curvilinear()) {
+        // The four values that surfaces are looked for with span the slab. Places have rounding errors.
+        const double share =
+            variant_.function == RayFunction::isosurface ? 0.5 : reach_share(params_.sampling);
+        rows = brick_rows(space_, brick_size, std::max(share, 0.01) * lattice_.slab_local,
+                          filter.support_voxels());
+    }
+    bricks_ = load_bricks(prepare.assets(), *sampled_, sampled_channel_, brick_size, border, rows);
     const std::uint64_t key = Hash().add(parameters_key_).add(bricks_.get()).add(bricks_->version).value();
     skip_map_.update(bricks_->grid, visible_, crop_, smooth_, key,
                      filter.overshoot() + overshoot(params_.sampling));
@@ -111,8 +119,10 @@ Bounds RayCastEffect::seen_bounds(Bounds bounds) const {
     if (variant_.skipping != Skipping::none && variant_.function != RayFunction::xray) {
         const glm::vec3 bricks = glm::vec3(source_->volume().grid.dims) / static_cast<float>(brick_size);
         const VoxelBox& occupied = skip_map_.occupied_box();
-        bounds.min = glm::max(bounds.min, glm::vec3(occupied.first) / bricks);
-        bounds.max = glm::min(bounds.max, glm::vec3(occupied.first + occupied.size) / bricks);
+        const FrameBox box = space_.box_of(glm::vec3(occupied.first) / bricks,
+                                           glm::vec3(occupied.first + occupied.size) / bricks);
+        bounds.min = glm::max(bounds.min, glm::vec3(box.min));
+        bounds.max = glm::min(bounds.max, glm::vec3(box.max));
     }
     return bounds;
 }

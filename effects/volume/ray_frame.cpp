@@ -16,13 +16,16 @@ double eye_depth(const glm::dmat4& projection, bool orthographic, double ndc_z) 
 
 }  // namespace
 
-RayFrame make_ray_frame(const View& view, const glm::dmat4& texture_to_world) {
-    const glm::dmat4 to_eye = view.view * texture_to_world;
+RayFrame make_ray_frame(const View& view, const glm::dmat4& local_to_world, const glm::dvec3& low,
+                        const glm::dvec3& high) {
+    const glm::dmat4 to_eye = view.view * local_to_world;
     const glm::dmat4 from_eye = glm::inverse(to_eye);
     const glm::dmat3 world_from_eye = glm::transpose(glm::dmat3(view.view));
-    const glm::dvec3 centre = to_eye * glm::dvec4(0.5, 0.5, 0.5, 1.0);
-    const double radius = 0.5 * (glm::length(glm::dvec3(to_eye[0])) + glm::length(glm::dvec3(to_eye[1])) +
-                                 glm::length(glm::dvec3(to_eye[2])));
+    const glm::dvec3 centre = to_eye * glm::dvec4(0.5 * (low + high), 1.0);
+    const glm::dvec3 size = high - low;
+    const double radius =
+        0.5 * (glm::length(glm::dvec3(to_eye[0])) * size.x + glm::length(glm::dvec3(to_eye[1])) * size.y +
+               glm::length(glm::dvec3(to_eye[2])) * size.z);
     const double near = eye_depth(view.projection, view.orthographic, -1.0);
     const double far = eye_depth(view.projection, view.orthographic, 1.0);
     // An eye inside the volume, or in front of it, still needs a plane that it can see.

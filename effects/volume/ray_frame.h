@@ -9,7 +9,7 @@
 namespace viscera::volume {
 
 /// The rays of a picture in single precision, as glsl/volume/ray.glsl has them: a point on a plane through
-/// the volume for each pixel and the direction from the eye, both in texture coordinates. Element 0 belongs
+/// the volume for each pixel and the direction from the eye, both in local coordinates. Element 0 belongs
 /// to the picture's centre, 1 and 2 are added per NDC x and y.
 struct RayFrame {
     std::array<glm::vec3, 3> point{};
@@ -21,8 +21,10 @@ struct RayFrame {
     glm::vec4 depth_to_share{0.0F};
 };
 
-/// `texture_to_world`: of the volume, not singular. Computed in double precision about the volume, so that
-/// neither a far eye nor a far volume costs digits.
-[[nodiscard]] RayFrame make_ray_frame(const View& view, const glm::dmat4& texture_to_world);
+/// `local_to_world`: of the volume, not singular; `low`, `high`: the box around it in local coordinates.
+/// Computed in double precision about the volume, so that neither a far eye nor a far volume costs digits.
+[[nodiscard]] RayFrame make_ray_frame(const View& view, const glm::dmat4& local_to_world,
+                                      const glm::dvec3& low = glm::dvec3(0.0),
+                                      const glm::dvec3& high = glm::dvec3(1.0));
 
 }  // namespace viscera::volume

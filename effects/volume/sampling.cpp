@@ -11,6 +11,22 @@ constexpr std::array<std::string_view, 4> scheme_names{"midpoint", "gauss", "pre
 constexpr std::array<std::string_view, 3> jitter_names{"none", "hash", "blue_noise"};
 constexpr double gauss_point = 0.28867513459481287;  // 1 / (2 sqrt 3)
 
+/// What a matrix makes of a vector of length 1 at most, from above; `bound`: the root of all elements
+/// squared.
+double longest_local(const glm::dmat3& m, double bound) {
+    // The trace of a power of M^T M bounds that of its largest eigenvalue, the more closely the higher it is.
+    glm::dmat3 power = glm::transpose(m / bound) * (m / bound);
+    double exponent = 2.0;
+    double scale = 1.0;
+    for (int i = 0; i < 4; ++i) {
+        const double size = power[0][0] + power[1][1] + power[2][2];
+        power = (power / size) * (power / size);
+        scale *= std::pow(size, 1.0 / exponent);
+        exponent *= 2.0;
+    }
+    return bound * scale * std::pow(power[0][0] + power[1][1] + power[2][2], 1.0 / exponent);
+}
+
 }  // namespace
 
 std::span<const std::string_view> choice_names(Scheme) {
@@ -58,18 +74,16 @@ void SamplingParams::visit(ParamVisitor& v) {
     reconstruction.visit(v);
 }
 
-Lattice make_lattice(const SamplingParams& params, const glm::dmat4& texture_to_world, const glm::ivec3& dims,
-                     Log& log, double step_factor) {
-    double spacing = 1e300;
+Lattice make_lattice(const SamplingParams& params, const Space& space, Log& log, double step_factor) {
+    const glm::ivec3& dims = space.dims;
+    const glm::dmat4 box = space.box_to_world();
     double diagonal = 0.0;
     for (int a = 0; a < 3; ++a) {
-        const double length = glm::length(glm::dvec3(texture_to_world[a]));
-        spacing = std::min(spacing, length / static_cast<double>(dims[a]));
-        diagonal += length;
+        diagonal += glm::length(glm::dvec3(box[a]));
     }
     // Two samples a slab everywhere but at midpoints, so that a step costs the same whatever the scheme.
     const double samples = params.scheme == Scheme::midpoint ? 1.0 : 2.0;
-    Lattice lattice{.slab_mm = params.step * step_factor * spacing * samples};
+    Lattice lattice{.slab_mm = params.step * step_factor * voxel_spacing_mm(space) * samples};
     if (lattice.slab_mm * most_slabs < diagonal) {
         log.fault("volume.step", "the step would take more than " + std::to_string(most_slabs) +
                                      " slabs through the volume; it is made longer");
@@ -77,31 +91,39 @@ Lattice make_lattice(const SamplingParams& params, const glm::dmat4& texture_to_
     }
     // No ray is longer than the volume's sides together: whatever the step, a float holds the slab.
     lattice.slab_mm = std::min(lattice.slab_mm, diagonal);
-    // The texture direction of a world direction is at most as long as the inverse's largest row says.
-    const glm::dmat3 to_texture = glm::inverse(glm::dmat3(texture_to_world));
+    // The local direction of a world direction is at most as long as the inverse's largest row says, and all
+    // of it as the rows together.
+    const glm::dmat3 to_local = glm::inverse(glm::dmat3(space.local_to_world));
+    double longest = 0.0;
     for (int a = 0; a < 3; ++a) {
-        const glm::dvec3 row(to_texture[0][a], to_texture[1][a], to_texture[2][a]);
+        const glm::dvec3 row(to_local[0][a], to_local[1][a], to_local[2][a]);
+        longest += glm::dot(row, row);
         const auto all = static_cast<double>(dims[a]);
         const double voxels = std::min(all, lattice.slab_mm * glm::length(row) * all);
         lattice.slab_voxels = std::max(a == 0 ? 0.0 : lattice.slab_voxels, voxels);
     }
+    lattice.slab_local = lattice.slab_mm * longest_local(to_local, std::sqrt(longest));
     const int cells = dims.x + dims.y + dims.z + 8;
     lattice.slab_limit = params.scheme == Scheme::cell ? std::min(2 * cells, most_slabs) : most_slabs;
     return lattice;
 }
 
-double reach(const SamplingParams& params, const Lattice& lattice) {
+double reach_share(const SamplingParams& params) {
+    const double jitter = params.jitter == Jitter::none ? 0.0 : 0.5;
     switch (params.scheme) {
         case Scheme::midpoint:
-            return params.jitter == Jitter::none ? 0.0 : 0.5 * lattice.slab_voxels;
+            return jitter;
         case Scheme::gauss:
-            return (gauss_point + (params.jitter == Jitter::none ? 0.0 : 0.5)) * lattice.slab_voxels;
+            return gauss_point + jitter;
         case Scheme::preintegrated:
-            return (params.jitter == Jitter::none ? 0.5 : 1.0) * lattice.slab_voxels;
         case Scheme::cell:
-            return 0.5;
+            return 0.5 + jitter;
     }
     return 0.0;
+}
+
+double reach(const SamplingParams& params, const Lattice& lattice) {
+    return params.scheme == Scheme::cell ? 0.5 : reach_share(params) * lattice.slab_voxels;
 }
 
 float overshoot(const SamplingParams& params) {

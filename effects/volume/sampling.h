@@ -9,6 +9,7 @@
 
 #include "effects/volume/limits.h"
 #include "effects/volume/reconstruction.h"
+#include "effects/volume/space.h"
 #include "engine/core/log.h"
 #include "engine/core/params.h"
 
@@ -42,7 +43,9 @@ struct SamplingParams {
 /// Slabs of one volume under one placement.
 struct Lattice {
     double slab_mm = 1.0;      ///< length of a slab in the world
-    double slab_voxels = 0.5;  ///< the most voxels that a slab crosses along any axis, in any direction
+    double slab_voxels = 0.5;  ///< the most voxels that a slab crosses along any axis, in any direction;
+                               ///< curvilinear: not known, since it grows towards the axis
+    double slab_local = 0.5;   ///< the most that a slab can be long in local coordinates
     int slab_limit = 1;        ///< slabs of a ray, or cells it crosses, are fewer
 };
 
@@ -51,12 +54,14 @@ struct Lattice {
 /// slab.
 inline constexpr int most_slabs = 30000;
 
-/// texture_to_world: invertible. A step that would take more than most_slabs is made longer, with a fault in
-/// the log. step_factor: of the frame's quality.
-[[nodiscard]] Lattice make_lattice(const SamplingParams& params, const glm::dmat4& texture_to_world,
-                                   const glm::ivec3& dims, Log& log, double step_factor = 1.0);
+/// space: invertible. A step that would take more than most_slabs is made longer, with a fault in the log.
+/// step_factor: of the frame's quality.
+[[nodiscard]] Lattice make_lattice(const SamplingParams& params, const Space& space, Log& log,
+                                   double step_factor = 1.0);
 
-/// How far beyond its own brick a slab's samples can lie [voxels], without the filter's support.
+/// How far from its middle a slab's samples can lie, as a share of its length.
+[[nodiscard]] double reach_share(const SamplingParams& params);
+/// How far beyond its own brick a slab's samples can lie [voxels], without the filter's support; Cartesian.
 [[nodiscard]] double reach(const SamplingParams& params, const Lattice& lattice);
 
 /// How far a scheme goes beyond the values that it samples, as a share of their range.

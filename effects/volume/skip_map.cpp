@@ -1,8 +1,10 @@
 #include "effects/volume/skip_map.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <numbers>
 
 #include "engine/core/hash.h"
 
@@ -14,8 +16,59 @@ constexpr int kind_smooth = 64;
 
 }  // namespace
 
-std::shared_ptr<Bricks> load_bricks(Assets& assets, const Source& source, int channel, int size, int border) {
-    const std::uint64_t key = Hash().add(source.key).add(channel).add(size).add(border).value();
+BrickRows brick_rows(const Space& space, int size, double reach, double support) {
+    constexpr double rounding = 0.02;  // of places against brick faces [voxels], far more than there is
+    const VolumeShape& shape = space.shape;
+    const ShapeAxes axes = axes_of(shape, space.dims);
+    const glm::ivec3 bricks = (space.dims + size - 1) / size;
+    const bool spherical = shape.kind == VolumeKind::spherical;
+    const int radial = shape.radius_axis();
+    // Slabs reach across the seam of a full circle also where the samples there are no neighbours.
+    const bool full = shape.angle_rad > 2.0 * std::numbers::pi - 1e-9;
+    BrickRows rows{.angle_axis = shape.angle_axis(), .wrap = full};
+    const auto voxels = [&](int axis, double way) {
+        const bool ring = full && axis == rows.angle_axis;
+        const double all = ring ? space.dims[axis] / 2 + 1 : space.dims[axis];
+        return static_cast<int>(std::min(std::ceil(way / axes.step[axis] + support + rounding), all));
+    };
+    // The angle by which a way turns at most that passes a centre no nearer than its own length says.
+    const auto turn = [&](double radius) { return radius > reach ? std::asin(reach / radius) : 4.0; };
+    const auto low = [&](int axis, int brick) {
+        return axes.first[axis] + axes.step[axis] * (brick * size - 1);
+    };
+    const auto add = [&](int y, int brick) {
+        const double radius = std::max(low(radial, brick), shape.r_min_mm);
+        glm::ivec3 border(0);
+        border[radial] = voxels(radial, reach);
+        double across = radius;
+        if (spherical) {
+            const double end = std::min(std::max(std::abs(low(1, y)), std::abs(low(1, y + 1) + axes.step[1])),
+                                        0.5 * std::numbers::pi);
+            across *= std::cos(end);
+            border[1] = voxels(1, turn(radius));
+        } else {
+            border[2] = voxels(2, reach);
+        }
+        // Along a seam rounding decides on which side of it a place lies.
+        border[rows.angle_axis] = voxels(rows.angle_axis, turn(across)) + (full && !shape.wrap ? 1 : 0);
+        rows.borders.push_back(border);
+    };
+    for (int brick = 0; brick < bricks[radial]; ++brick) {
+        for (int y = 0; y < (spherical ? bricks.y : 1); ++y) {
+            add(y, brick);
+        }
+    }
+    return rows;
+}
+
+std::shared_ptr<Bricks> load_bricks(Assets& assets, const Source& source, int channel, int size, int border,
+                                    const BrickRows& rows) {
+    Hash hash;
+    hash.add(source.key).add(channel).add(size).add(border);
+    for (const glm::ivec3& own : rows.borders) {
+        hash.add(own);
+    }
+    const std::uint64_t key = hash.value();
     const Volume& volume = source.volume();
     const auto empty =
         static_cast<float>((source.statistics.min - volume.intercept) / volume.slope);  // as in the texture
@@ -30,9 +83,10 @@ std::shared_ptr<Bricks> load_bricks(Assets& assets, const Source& source, int ch
         changed = source.live->changes_since(bricks->version, everything);
     }
     if (everything) {
-        bricks->grid = summarise(
-            volume, channel, size, border, empty,
-            assets.progress("summarising " + std::filesystem::path(volume.source).filename().string()));
+        const Progress progress =
+            assets.progress("summarising " + std::filesystem::path(volume.source).filename().string());
+        bricks->grid = rows.angle_axis < 0 ? summarise(volume, channel, size, border, empty, progress)
+                                           : summarise(volume, channel, size, rows, empty, progress);
     }
     for (const VoxelBox& box : changed) {
         resummarise(bricks->grid, volume, channel, empty, box);

@@ -5,6 +5,7 @@
 #include "effects/volume/bricks.h"
 #include "effects/volume/classification.h"
 #include "effects/volume/source.h"
+#include "effects/volume/space.h"
 #include "engine/gl/texture.h"
 
 namespace viscera::volume {
@@ -14,9 +15,12 @@ struct Bricks {
     BrickGrid grid;
     std::uint64_t version = 0;  ///< of the source that they were made from
 };
-/// `border`: voxels around a brick that its range includes.
+/// `border`: voxels around a brick that its range includes; `rows`: instead of that for curvilinear volumes.
 [[nodiscard]] std::shared_ptr<Bricks> load_bricks(Assets& assets, const Source& source, int channel, int size,
-                                                  int border);
+                                                  int border, const BrickRows& rows = {});
+/// Borders for slabs whose samples lie at most `reach` (local) from their middles, and a filter that needs
+/// voxels up to `support` away. space: curvilinear.
+[[nodiscard]] BrickRows brick_rows(const Space& space, int size, double reach, double support);
 
 /// Where the transfer function hardly changes: a brick is smooth when `variation` grows by at most
 /// `tolerance` between its least and greatest stored number.

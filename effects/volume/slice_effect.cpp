@@ -41,25 +41,44 @@ std::span<const ProgramDesc> SliceEffect::programs() const {
     if (in_camera()) {
         program.defines.emplace_back("CAMERA");
     }
-    programs_ = {program};
-    if (params_.volume.storage != Storage::texture_3d) {
-        programs_.push_back(std::move(program));
-        programs_.back().defines.emplace_back("STORAGE_ATLAS");
+    programs_.clear();
+    variants_.clear();
+    for (const VolumeKind kind : {VolumeKind::cartesian, VolumeKind::cylindrical, VolumeKind::spherical}) {
+        if (params_.volume.geometry && params_.volume.geometry->kind != kind) {
+            continue;
+        }
+        for (const bool atlas : {false, true}) {
+            if (atlas && params_.volume.storage == Storage::texture_3d) {
+                continue;
+            }
+            programs_.push_back(program);
+            std::vector<std::string>& defines = programs_.back().defines;
+            const std::vector<std::string> own = coordinate_defines(kind);
+            defines.insert(defines.end(), own.begin(), own.end());
+            if (atlas) {
+                defines.emplace_back("STORAGE_ATLAS");
+            }
+            variants_.emplace_back(kind, atlas);
+        }
     }
     return programs_;
 }
 
 void SliceEffect::find_surface(Prepare& prepare) {
-    plane_ = slice_plane(params_.plane, texture_to_world_);
+    const glm::dmat4 box = space_.box_to_world();
+    plane_ = slice_plane(params_.plane, box);
     surface_ = {};
-    if (in_camera()) {
-        surface_ = params_.mesh.empty()
-                       ? cut_polygon(plane_, texture_to_world_)
-                       : mesh_in_local(params_.mesh, params_.mesh_filter, params_.mm_per_unit,
-                                       params_.mesh_placement, texture_to_world_, prepare.log());
+    if (in_camera() && params_.mesh.empty()) {
+        surface_ = cut_polygon(plane_, box);
+        for (glm::vec3& position : surface_.positions) {  // of the unit box
+            position = space_.low + glm::dvec3(position) * (space_.high - space_.low);
+        }
+    } else if (in_camera()) {
+        surface_ = mesh_in_local(params_.mesh, params_.mesh_filter, params_.mm_per_unit,
+                                 params_.mesh_placement, space_.local_to_world, prepare.log());
     }
     bounds_ = surface_.bounds();
-    surface_key_ = Hash().add(parameters_key_).add(texture_to_world_).value();
+    surface_key_ = Hash().add(parameters_key_).add(space_.local_to_world).value();
 }
 
 Work SliceEffect::prepare(Prepare& prepare) {
@@ -73,14 +92,18 @@ Work SliceEffect::prepare(Prepare& prepare) {
     const VolumeGrid& grid = source_->volume().grid;
     if (parameters_key_ != prepare.parameters_key() || !(grid_ == grid)) {
         function_ = load_function(params_.transfer_function, prepare.assets());
-        texture_to_world_ = placed(grid, params_.volume.placement);
-        if (invertible(texture_to_world_)) {
+        space_ = make_space(grid, params_.volume.placement);
+        if (invertible(space_.local_to_world)) {
             find_surface(prepare);
         }
         grid_ = grid;
         parameters_key_ = prepare.parameters_key();
     }
-    if (!invertible(texture_to_world_)) {
+    if (space_.shape.flat()) {
+        prepare.log().fault("volume.flat", source_->volume().source + ": an extent is 0; it is not drawn");
+        return Work::idle("the volume encloses nothing");
+    }
+    if (!invertible(space_.local_to_world)) {
         prepare.log().fault("volume.singular", "the volume's placement is singular; it is not drawn");
         return Work::idle("the volume's placement is singular");
     }
@@ -94,7 +117,7 @@ Work SliceEffect::prepare(Prepare& prepare) {
     }
     const View& view = prepare.frame().eye();
     const PixelRect region =
-        project_bounds(bounds_, view.view_projection() * texture_to_world_, prepare.size("colour"));
+        project_bounds(bounds_, view.view_projection() * space_.local_to_world, prepare.size("colour"));
     if (region.empty()) {
         return Work::idle("the slice lies outside the view");
     }
@@ -131,9 +154,12 @@ void SliceEffect::make_table(const gl::Functions& gl, const TexelMap& stored_of_
 }
 
 void SliceEffect::set_plane(const Pass& pass, const gl::Program& program) const {
-    const glm::dmat4 to_local = glm::inverse(texture_to_world_);
+    const glm::dmat4 to_local = glm::inverse(space_.local_to_world);
     const glm::dvec3 per_mm = to_local * glm::dvec4(plane_.normal(), 0.0);
-    program.set("u_slab_samples", slab_samples(params_.slab, per_mm, grid_.dims));
+    // Voxels along the normal; those of a curvilinear volume run every way.
+    const glm::dvec3 voxels_per_mm = space_.shape.curvilinear() ? glm::dvec3(1.0 / voxel_spacing_mm(space_))
+                                                                : per_mm * glm::dvec3(grid_.dims);
+    program.set("u_slab_samples", slab_samples(params_.slab, voxels_per_mm));
     program.set("u_slab_extent", glm::vec3(per_mm * params_.slab.thickness_mm));
     if (in_camera()) {
         return;
@@ -141,7 +167,7 @@ void SliceEffect::set_plane(const Pass& pass, const gl::Program& program) const 
     const glm::dvec2 size(pass.size());
     const double height = params_.height_mm > 0.0
                               ? params_.height_mm
-                              : fitting_height_mm(plane_, texture_to_world_, size.x / size.y);
+                              : fitting_height_mm(plane_, space_.box_to_world(), size.x / size.y);
     const std::array<glm::vec3, 3> point{
         glm::vec3(to_local * glm::dvec4(plane_.centre_mm, 1.0)),
         glm::vec3(to_local * glm::dvec4(plane_.right * (0.5 * height * size.x / size.y), 0.0)),
@@ -161,9 +187,12 @@ void SliceEffect::draw(const Pass& pass) {
         make_table(pass.gl(), gpu.map());
         table_key_ = table_key;
     }
-    const gl::Program& program = pass.use(gpu.is_atlas() ? 1 : 0);
+    const auto variant = std::ranges::find(variants_, std::pair(space_.shape.kind, gpu.is_atlas()));
+    const gl::Program& program = pass.use(static_cast<std::size_t>(variant - variants_.begin()));
     gpu.set(program);
-    pass.bind(program, "u_volume", gpu.texture(), params_.sampling.texture_filter(function_.nearest));
+    pass.bind(program, "u_volume", gpu.texture(), params_.sampling.texture_filter(function_.nearest),
+              space_.shape.wrap && !gpu.is_atlas() ? gl::Wrap::repeat : gl::Wrap::clamp);
+    set_places(program, space_);
     pass.bind(program, "u_transfer", *table_, gl::Filter::nearest);
     program.set("u_transfer_place", glm::vec2(table_place_));
     set_plane(pass, program);
@@ -174,7 +203,7 @@ void SliceEffect::draw(const Pass& pass) {
     const gl::Mesh& mesh = *pass.assets().shared<gl::Mesh>(
         surface_key_, [&] { return std::make_shared<gl::Mesh>(pass.gl(), surface_); });
     const View& view = pass.frame().eye();
-    program.set("u_to_clip", glm::mat4(view.view_projection() * texture_to_world_));
+    program.set("u_to_clip", glm::mat4(view.view_projection() * space_.local_to_world));
     pass.raster(gl::depth_tested_state);
     mesh.draw();
 }

@@ -7,6 +7,7 @@
 #include "effects/volume/classification.h"
 #include "effects/volume/gpu_volume.h"
 #include "effects/volume/slice_params.h"
+#include "effects/volume/space.h"
 #include "engine/core/mesh_data.h"
 #include "engine/runtime/effect.h"
 
@@ -30,13 +31,14 @@ class SliceEffect final : public Effect {
 
     SliceParams params_;
     mutable std::vector<ProgramDesc> programs_;
+    mutable std::vector<std::pair<VolumeKind, bool>> variants_;  ///< of each program: kind, atlas
     std::uint64_t parameters_key_ = 0;
     VolumeGrid grid_;
     std::shared_ptr<const Source> source_;
     std::shared_ptr<const Source> sampled_;  ///< what the texture holds: the source or its coefficients
     int sampled_channel_ = 0;
     TransferFunction function_;
-    glm::dmat4 texture_to_world_{1.0};
+    Space space_;
     SlicePlane plane_;
     MeshData surface_;  ///< camera: in local coordinates
     Bounds bounds_;

@@ -86,8 +86,8 @@ void SliceParams::validate() const {
     }
 }
 
-int slab_samples(const SlabParams& slab, const glm::dvec3& local_per_mm, const glm::ivec3& dims) {
-    const glm::dvec3 crossed = glm::abs(local_per_mm) * glm::dvec3(dims) * slab.thickness_mm;  // [voxels]
+int slab_samples(const SlabParams& slab, const glm::dvec3& voxels_per_mm) {
+    const glm::dvec3 crossed = glm::abs(voxels_per_mm) * slab.thickness_mm;
     const double count = std::ceil(std::max({crossed.x, crossed.y, crossed.z}) / slab.step);
     return static_cast<int>(std::clamp(count, 1.0, static_cast<double>(most_slab_samples)));
 }

@@ -48,9 +48,8 @@ struct SliceParams {
 };
 
 inline constexpr int most_slab_samples = 1024;
-/// Samples across a slab of a volume: `step` voxels apart at most, along the voxels' shortest way through the
-/// plane; 1 for a thin slice.
-[[nodiscard]] int slab_samples(const SlabParams& slab, const glm::dvec3& local_per_mm,
-                               const glm::ivec3& dims);
+/// Samples across a slab of a volume: `step` voxels apart at most along every axis, of which a mm across the
+/// slab crosses so many voxels; 1 for a thin slice.
+[[nodiscard]] int slab_samples(const SlabParams& slab, const glm::dvec3& voxels_per_mm);
 
 }  // namespace viscera::volume

@@ -8,7 +8,7 @@ float cubic_slope(float v0, float v1, float v2, float v3, vec4 d) {
     return d.x * (v0 - v1) + d.z * (v2 - v1) + d.w * (v3 - v1);
 }
 
-// Along each axis: voxels (clamped to the volume), weights and derivatives.
+// Along each axis: voxels (inside the volume), weights and derivatives.
 struct CubicStencil {
     ivec4 x, y, z;
     vec4 wx, wy, wz;
@@ -43,6 +43,9 @@ vec4 cubic_jet(vec3 place) {
         clamp(i.z + taps, ivec4(0), ivec4(size.z - 1)),
         vec4(w.w0.x, w.w1.x, w.w2.x, w.w3.x), vec4(w.w0.y, w.w1.y, w.w2.y, w.w3.y), vec4(w.w0.z, w.w1.z, w.w2.z, w.w3.z),
         vec4(d.w0.x, d.w1.x, d.w2.x, d.w3.x), vec4(d.w0.y, d.w1.y, d.w2.y, d.w3.y), vec4(d.w0.z, d.w1.z, d.w2.z, d.w3.z));
+#ifdef COORDINATES
+    s.ANGLE = on_ring(i.ANGLE + taps, size.ANGLE);
+#endif
     vec4 p0 = cubic_plane(s, s.z.x);
     vec4 p1 = cubic_plane(s, s.z.y);
     vec4 p2 = cubic_plane(s, s.z.z);

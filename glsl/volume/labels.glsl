@@ -1,6 +1,11 @@
 // Segments: each voxel of a second grid names one. Never filtered.
 uniform usampler3D u_labels;
 uniform mat4 u_labels_from_local;   // local -> voxels of the label grid
+#ifdef COORDINATES
+uniform bool u_labels_curved;       // the label grid has the volume's shape: texture coordinates -> voxels instead
+uniform vec3 u_labels_scale;
+uniform vec3 u_labels_offset;
+#endif
 uniform sampler2D u_label_looks;    // row 0: colour, its weight; row 1: factor on extinction, row of the ramp
 #ifdef LABEL_RAMPS
 uniform sampler2D u_label_ramps;    // as u_transfer, one row for each ramp; row 0 is the transfer function
@@ -8,8 +13,15 @@ uniform sampler2D u_label_ramps;    // as u_transfer, one row for each ramp; row
 
 // Index of the segment's look; 0: the default, also outside of the label grid.
 int label_at(vec3 local) {
-    ivec3 voxel = ivec3(floor((u_labels_from_local * vec4(local, 1.0)).xyz));
+    vec3 place = (u_labels_from_local * vec4(local, 1.0)).xyz;
+#ifdef COORDINATES
+    place = u_labels_curved ? to_sample(local) * u_labels_scale + u_labels_offset : place;
+#endif
+    ivec3 voxel = ivec3(floor(place));
     ivec3 size = textureSize(u_labels, 0);
+#ifdef COORDINATES
+    voxel.ANGLE = u_labels_curved ? on_ring(voxel.ANGLE, size.ANGLE) : voxel.ANGLE;
+#endif
     bool inside = all(greaterThanEqual(voxel, ivec3(0))) && all(lessThan(voxel, size));
     int found = int(texelFetch(u_labels, clamp(voxel, ivec3(0), size - 1), 0).r);
     return inside ? found : 0;

@@ -37,7 +37,11 @@ void march(Ray ray, vec2 interval, float offset, inout State state) {
         bool leaping = true;
         while (leaping) {
             // A slab belongs to the brick of its centre, whose range covers the whole slab: its border is that wide.
-            Run run = run_from(leaper, float(end) + 0.5);
+            float place = float(end) + 0.5;
+#ifdef COORDINATES
+            place = min(place, 0.5 * (float(end) + slabs));  // the last slab ends with the volume
+#endif
+            Run run = run_from(leaper, place);
             bool goes_on = run.kind == kind;
             bool begins = kind == run_empty;
             end = goes_on || begins ? min(end + 1 + int(min(run.extent, float(count))), last) : end;

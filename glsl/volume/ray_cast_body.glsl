@@ -5,7 +5,17 @@
 #define PREINTEGRATED 2
 #define CELL 3
 #include "volume/ray.glsl"
+#ifdef COORDINATES
+#include "volume/curvilinear.glsl"
+#include "volume/curvilinear_limits.glsl"
+#if COORDINATES == 1
+#include "volume/coordinates_cylindrical.glsl"
+#else
+#include "volume/coordinates_spherical.glsl"
+#endif
+#else
 #include "volume/coordinates_cartesian.glsl"
+#endif
 #include "volume/sample.glsl"
 #include "volume/classify.glsl"
 #include "volume/material.glsl"
@@ -24,9 +34,13 @@
 #include "volume/function_projection.glsl"
 #endif
 #ifdef SKIP
+#ifdef COORDINATES
+#include "volume/skip_curvilinear.glsl"
+#else
 #include "volume/skip.glsl"
 #endif
-#if SCHEME == CELL || defined(ISOSURFACE)
+#endif
+#if (SCHEME == CELL || defined(ISOSURFACE)) && !defined(COORDINATES)
 #include "volume/march_cells.glsl"
 #else
 #include "volume/march.glsl"
@@ -54,7 +68,7 @@ vec4 cast_ray(vec2 pixel) {
     look_along(ray.world);
     State state = begin();
     bool met = false;
-#ifdef JITTER
+#if defined(JITTER) && !defined(ISOSURFACE)
     float offset = jitter(ivec2(pixel));
 #else
     const float offset = 0.0;
@@ -62,10 +76,16 @@ vec4 cast_ray(vec2 pixel) {
 #ifdef SUB_VOLUME
     float sub_volume_end = 3e38;
 #endif
+#ifdef LIMITS
+    // Both are in order along the ray, so their common parts are, too.
+    vec2 piece = vec2(0.0);
+    for (int i = 0; i < max_intervals * max_passages; ++i) {
+        int passage = i % max_passages;
+        piece = passage == 0 ? ray_interval(ray, i / max_passages) : piece;
+        vec2 interval = limit_interval(ray, pixel, piece, passage);
+#else
     for (int i = 0; i < max_intervals; ++i) {
         vec2 interval = ray_interval(ray, i);
-#ifdef LIMITS
-        interval = limit_interval(ray, pixel, interval);
 #endif
 #ifdef CLIP
         interval = clip_interval(ray, interval);

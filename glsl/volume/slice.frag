@@ -1,14 +1,22 @@
 #version 330 core
 // A volume's values on a plane, which fills the picture or is drawn as a surface (CAMERA), or on a mesh.
 // SLAB: 0 mean, 1 greatest, 2 least value across the slice's thickness.
+#ifdef COORDINATES
+#include "volume/curvilinear.glsl"
+#if COORDINATES == 1
+#include "volume/place_cylindrical.glsl"
+#else
+#include "volume/place_spherical.glsl"
+#endif
+#endif
 #include "volume/sample.glsl"
 #include "volume/classify.glsl"
 uniform int u_slab_samples;
-uniform vec3 u_slab_extent;  // across the slab, in texture coordinates
+uniform vec3 u_slab_extent;  // across the slab, in local coordinates: those of the texture, unless it is curvilinear
 #ifdef CAMERA
 in vec3 v_local;
 #else
-uniform vec3 u_point[3];    // in texture coordinates: in the picture's centre, per NDC x, per NDC y
+uniform vec3 u_point[3];    // in local coordinates: in the picture's centre, per NDC x, per NDC y
 uniform vec2 u_pixel;       // size of a pixel in normalised device coordinates
 uniform vec4 u_background;  // premultiplied
 #endif
@@ -32,8 +40,13 @@ vec2 across_slab(vec3 middle) {
     for (int i = 0; i < u_slab_samples; ++i) {
         float share = (float(i) + 0.5) / float(u_slab_samples) - 0.5;
         vec3 place = middle + share * u_slab_extent;
-        float here = sample_volume(place);
+#ifdef COORDINATES
+        place = to_sample(place);
+        bool counts = all(greaterThanEqual(place, u_sample_low)) && all(lessThanEqual(place, u_sample_high));
+#else
         bool counts = inside_box(place);
+#endif
+        float here = sample_volume(place);
         count += counts ? 1.0 : 0.0;
 #if SLAB == 1
         value = counts ? max(value, here) : value;

@@ -1,5 +1,26 @@
 // Where voxels are read: a 3-D texture, or slices tiled over the layers of an array (STORAGE_ATLAS), for what exceeds
 // the limit of 3-D textures: effects/volume/atlas.h.
+#ifdef COORDINATES
+// Curvilinear: first and last voxel along the angle may be neighbours.
+uniform bool u_ring;
+#if COORDINATES == 1
+#define ANGLE y
+#else
+#define ANGLE x
+#endif
+
+// A voxel of the line along the angle, counted on beyond the ends.
+int on_ring(int voxel, int count) {
+    int turns = int(floor((float(voxel) + 0.5) / float(count)));
+    return u_ring ? voxel - turns * count : clamp(voxel, 0, count - 1);
+}
+
+ivec4 on_ring(ivec4 voxels, int count) {
+    ivec4 turns = ivec4(floor((vec4(voxels) + 0.5) / float(count)));
+    return u_ring ? voxels - turns * count : clamp(voxels, ivec4(0), ivec4(count - 1));
+}
+#endif
+
 #ifdef STORAGE_ATLAS
 uniform sampler2DArray u_volume;
 uniform ivec3 u_volume_size;  // voxels
@@ -33,6 +54,10 @@ float linear_texel(vec3 place) {
     vec3 p = place * size;
     // The border around each slice takes what rounding moves beyond the outermost centres.
     vec2 inside = clamp(p.xy, vec2(0.5), size.xy - 0.5);
+#ifdef COORDINATES
+    // A ring's border holds the other end.
+    inside.ANGLE = u_ring ? p.ANGLE - size.ANGLE * floor(p.ANGLE / size.ANGLE) : inside.ANGLE;
+#endif
     float below = floor(p.z - 0.5);
     float low = atlas_slice(inside, int(below));
     float high = atlas_slice(inside, int(below) + 1);
@@ -52,6 +77,13 @@ float texel(ivec3 voxel) {
 
 // Trilinear by the texture unit; beyond the outermost centres their value goes on.
 float linear_texel(vec3 place) {
+#ifdef COORDINATES
+    // The sampler of a ring repeats along all axes.
+    vec3 edge = 0.5 / vec3(volume_size());
+    float angle = place.ANGLE;
+    place = clamp(place, edge, 1.0 - edge);
+    place.ANGLE = u_ring ? angle : place.ANGLE;
+#endif
     return textureLod(u_volume, place, 0.0).r;
 }
 #endif
@@ -76,5 +108,9 @@ Cell cell_at(vec3 place) {
 }
 
 ivec3 inside_volume(ivec3 voxel) {
-    return clamp(voxel, ivec3(0), volume_size() - 1);
+    ivec3 inside = clamp(voxel, ivec3(0), volume_size() - 1);
+#ifdef COORDINATES
+    inside.ANGLE = on_ring(voxel.ANGLE, volume_size().ANGLE);
+#endif
+    return inside;
 }

@@ -95,6 +95,10 @@ std::vector<ParameterSet> parameter_sets() {
     const auto cast = [](const std::string& parameters) {
         return ParameterSet{"volume.ray_cast", R"({"volume": {"host": "host"}, )" + parameters + "}"};
     };
+    const auto curved = [](const std::string& geometry, const std::string& parameters) {
+        return ParameterSet{"volume.ray_cast", R"({"volume": {"file": "any.mha", "geometry": {)" + geometry +
+                                                   "}}, " + parameters + "}"};
+    };
     const auto slice = [](const std::string& parameters) {
         return ParameterSet{"volume.slice", R"({"volume": {"host": "host"}, )" + parameters + "}"};
     };
@@ -122,6 +126,21 @@ std::vector<ParameterSet> parameter_sets() {
         cast(R"("sampling": {"filter": "catmull_rom_fp32"}, "shading": {"enabled": true})"),
         cast(R"("sampling": {"limits": "two_pass"})"),
         cast(R"("sampling": {"limits": "mesh"})"),
+        curved(R"("kind": "cylindrical")",
+               R"("labels": {"host": "labels", "segments": [{"id": 1, "points": [{"value": 0}]}]},
+                  "overlay": {"host": "overlay"}, "shading": {"enabled": true}, "clip_planes": [{}],
+                  "sampling": {"filter": "bspline_fp32", "tolerance": 0.1, "limits": "mesh", "jitter": "hash"})"),
+        curved(R"("kind": "spherical")",
+               R"("labels": {"host": "labels"}, "overlay": {"host": "overlay"}, "sub_volume": {},
+                  "shading": {"enabled": true, "light_volume": {"ambient_occlusion": 1}},
+                  "sampling": {"filter": "catmull_rom", "scheme": "preintegrated", "limits": "two_pass"})"),
+        curved(R"("kind": "cylindrical")",
+               R"("function": "isosurface", "sampling": {"filter": "linear_fp32"})"),
+        curved(R"("kind": "spherical")", R"("function": "isosurface", "sampling": {"filter": "bspline"})"),
+        curved(R"("kind": "spherical")", R"("function": "xray", "sampling": {"filter": "nearest"})"),
+        {"volume.slice",
+         R"({"volume": {"file": "any.mha", "geometry": {"kind": "spherical"}}, "view": "camera",
+                "sampling": {"filter": "bspline"}})"},
         {"mesh.surface", R"({"mesh": "any.obj", "lights": [{}, {}]})"},
         {"organ.surface",
          R"({"mesh": {"file": "any.obj"}, "diffuse_map": "a.png", "normal_map": {"map": "b.png"},
@@ -165,13 +184,17 @@ std::vector<ProgramDesc> all_programs() {
         if (!faults.empty()) {
             throw std::runtime_error(set.effect + faults.front().pointer + ": " + faults.front().message);
         }
-        // What else is in the picture has its own file, which the default parameters validate; with every set
-        // of parameters it would only take four times as long.
-        std::ranges::copy_if(
-            effect->programs(), std::back_inserter(programs), [](const ProgramDesc& program) {
-                return std::ranges::find(program.defines, "SURFACE") == program.defines.end() &&
-                       std::ranges::find(program.defines, "BACKGROUND") == program.defines.end();
-            });
+        // What else is in the picture has its own file, and so have curvilinear volumes: the default
+        // parameters validate them, and sets of their own; with every set it would only take ten times as
+        // long.
+        const bool curved = set.parameters.find("geometry") != std::string::npos;
+        std::ranges::copy_if(effect->programs(), std::back_inserter(programs),
+                             [&](const ProgramDesc& program) {
+                                 return std::ranges::none_of(program.defines, [&](const std::string& define) {
+                                     return define == "SURFACE" || define == "BACKGROUND" ||
+                                            (!curved && define.starts_with("COORDINATES"));
+                                 });
+                             });
     }
     return programs;
 }

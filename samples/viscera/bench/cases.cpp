@@ -28,6 +28,7 @@ std::span<const Case> all_cases() {
         {"quality", "the ray caster's knobs, one at a time", run_quality},
         {"filters", "time per sample of a volume by filter, beside its error", run_filters},
         {"organ", "the organ by feature, against the textured organ", run_organ},
+        {"curvilinear", "cylindrical and spherical volumes against a box of as many voxels", run_curvilinear},
     }};
     return cases;
 }

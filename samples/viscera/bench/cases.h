@@ -39,5 +39,6 @@ void run_skipping(Lab& lab);
 void run_quality(Lab& lab);
 void run_filters(Lab& lab);
 void run_organ(Lab& lab);
+void run_curvilinear(Lab& lab);
 
 }  // namespace viscera::app
