@@ -134,6 +134,10 @@ Work BloodEffect::prepare(Prepare& prepare) {
     }
     const auto gap = std::max(static_cast<std::int64_t>(longest_gap_s * rate), std::int64_t{1});
     const bool runs = bleeds(std::max(state.step, target_step_ - gap), target_step_);
+    state.jets_bleed = std::ranges::any_of(wounds_, [&](const WoundParams& wound) {
+        return wound.kind == BleedingKind::jet && wound.rate_mm3_s > 0.0 && frame.time_s >= wound.start_s &&
+               frame.time_s < wound.stop_s;
+    });
     if (!state.bled && !runs) {
         state.step = target_step_;
         return Work::idle("there is no blood");
@@ -175,6 +179,9 @@ void BloodEffect::find_places() {
             place.found = true;
             place.uv = glm::vec2(nearest->uv - glm::floor(nearest->uv));
         }
+    }
+    for (std::size_t i = 0; i < places_.size(); ++i) {
+        state_->wound_uvs[i] = medium_.wound_uvs[i] = places_[i].uv;
     }
 }
 
@@ -235,14 +242,35 @@ void BloodEffect::collect_drops(std::int64_t step) {
         }
         const auto drops =
             state_->meters[i].flow(wound.rate_mm3_s * pulse_of(wound, time) * dt, params_.liquid.drop_mm3);
+        if (wound.kind == BleedingKind::jet) {
+            state_->jets.leave(wound, static_cast<std::uint32_t>(i), drops, pulse_of(wound, time), dt);
+            continue;
+        }
         for (int n = 0; n < drops.count; ++n) {
             spawns_.push_back({.uv = places_[i].uv,
                                .volume_mm3 = static_cast<float>(drops.volume_mm3),
                                .radius_mm = static_cast<float>(wound.radius_mm),
-                               .seed = static_cast<float>(state_->seed++ & 0xffffffU),
                                .source = static_cast<float>(i)});
         }
     }
+    fly(dt);
+    for (DropSpawn& spawn : spawns_) {
+        spawn.seed = static_cast<float>(state_->seed++ & 0xffffffU);
+    }
+}
+
+void BloodEffect::fly(double dt) {
+    if (state_->jets.particles().empty()) {
+        return;
+    }
+    if (tree_key_ != surface_key_) {
+        tree_key_ = surface_key_;
+        tree_ = TriangleTree(mesh_->data(), to_world_);
+    }
+    const glm::dvec3 gravity = gravity_.down * (gravity_.strength * standard_gravity_m_s2 * 1000.0);
+    state_->jets.step(tree_, gravity, dt, spawns_);
+    state_->bled = state_->moving = true;
+    state_->disturbed_at = state_->looks + 1;
 }
 
 void BloodEffect::run_step(const Pass& pass) {
@@ -299,7 +327,8 @@ void BloodEffect::draw(const Pass& pass) {
             run_step(pass);
         }
         ++state.version;
-        if (const auto still = state.gpu->all_still(); still && *still >= state.disturbed_at) {
+        if (const auto still = state.gpu->all_still();
+            still && *still >= state.disturbed_at && state.jets.particles().empty()) {
             state.moving = false;
             state.ring.forget();
         }

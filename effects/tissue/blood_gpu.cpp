@@ -314,6 +314,7 @@ void BloodGpu::spawn(const Pass& pass, const BloodMedium& medium, std::span<cons
             if (energy) {
                 pass.bind(program, "u_energy", "energy");
                 program.set("u_sealed", medium.sealed_energy);
+                program.set("u_source", std::span<const glm::vec2>(medium.wound_uvs));
             }
             program.set("u_ring",
                         counts ? glm::ivec2(sources, 1) : glm::ivec2(drops_[0].width(), drops_[0].height()));

@@ -61,7 +61,7 @@ void BloodState::begin_anew(std::int64_t at, double rate, double drop_life_s) {
     meters.assign(most_wounds, {});
     seed = 0;
     tool_count = 0;
-    flying_mm3 = lost_mm3 = 0.0;
+    jets.clear();
 }
 
 }  // namespace viscera::tissue

@@ -8,6 +8,7 @@
 
 #include "effects/tissue/blood_gpu.h"
 #include "effects/tissue/blood_sources.h"
+#include "effects/tissue/jets.h"
 #include "engine/runtime/assets.h"
 
 namespace viscera::tissue {
@@ -57,8 +58,9 @@ struct BloodState {
     DropRing ring;
     std::vector<DropMeter> meters;
     std::uint32_t seed = 0;
-    double flying_mm3 = 0.0;  ///< of jets in the air
-    double lost_mm3 = 0.0;    ///< of jets that met nothing
+    Jets jets;
+    bool jets_bleed = false;  ///< a wound sends out a jet in this frame
+    std::array<glm::vec2, most_wounds> wound_uvs{};
 
     /// The state of a name, made when it is first asked for.
     [[nodiscard]] static std::shared_ptr<BloodState> find(Assets& assets, std::string_view name);
