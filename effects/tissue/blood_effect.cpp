@@ -19,6 +19,8 @@ constexpr std::int64_t steps_per_look = 8;
 constexpr double longest_gap_s = 0.5;
 constexpr double smallest_drop_share = 0.02;
 constexpr double latest_s = 1.0e9;
+// Drops of a jet in those of a wound: it is finer.
+constexpr double jet_drop_share = 0.25;
 
 std::int64_t step_at(double time_s, double steps_per_s) {
     // A frame's time that should lie on the grid may miss it by its own rounding.
@@ -240,10 +242,12 @@ void BloodEffect::collect_drops(std::int64_t step) {
         if (!places_[i].found || time < wound.start_s || time >= wound.stop_s) {
             continue;
         }
-        const auto drops =
-            state_->meters[i].flow(wound.rate_mm3_s * pulse_of(wound, time) * dt, params_.liquid.drop_mm3);
-        if (wound.kind == BleedingKind::jet) {
-            state_->jets.leave(wound, static_cast<std::uint32_t>(i), drops, pulse_of(wound, time), dt);
+        const bool flies = wound.kind == BleedingKind::jet;
+        const auto drops = state_->meters[i].flow(wound.rate_mm3_s * pulse_of(wound, time) * dt,
+                                                  params_.liquid.drop_mm3 * (flies ? jet_drop_share : 1.0));
+        if (flies) {
+            state_->jets.leave(wound, static_cast<std::uint32_t>(i), drops, pulse_of(wound, time),
+                               gravity_mm_s2(), dt);
             continue;
         }
         for (int n = 0; n < drops.count; ++n) {
@@ -259,6 +263,10 @@ void BloodEffect::collect_drops(std::int64_t step) {
     }
 }
 
+glm::dvec3 BloodEffect::gravity_mm_s2() const {
+    return gravity_.down * (gravity_.strength * standard_gravity_m_s2 * 1000.0);
+}
+
 void BloodEffect::fly(double dt) {
     if (state_->jets.particles().empty()) {
         return;
@@ -267,8 +275,7 @@ void BloodEffect::fly(double dt) {
         tree_key_ = surface_key_;
         tree_ = TriangleTree(mesh_->data(), to_world_);
     }
-    const glm::dvec3 gravity = gravity_.down * (gravity_.strength * standard_gravity_m_s2 * 1000.0);
-    state_->jets.step(tree_, gravity, dt, spawns_);
+    state_->jets.step(tree_, gravity_mm_s2(), dt, spawns_);
     state_->bled = state_->moving = true;
     state_->disturbed_at = state_->looks + 1;
 }
@@ -278,7 +285,7 @@ void BloodEffect::run_step(const Pass& pass) {
     const std::int64_t step = state.step;
     set_tools(step);
     collect_drops(step);
-    state.ring.pass_to(step);
+    state.ring.pass_to(state.steps_run++);
     // Two looks without a step between them would find that nothing has changed.
     const bool due = step % steps_per_look == 0 && step != state.looked_at;
     if (due || medium_.tools.size() != state.tool_count) {

@@ -41,6 +41,7 @@ class BloodEffect final : public Effect {
     void run_step(const Pass& pass);
     void collect_drops(std::int64_t step);
     void fly(double dt);
+    [[nodiscard]] glm::dvec3 gravity_mm_s2() const;
 
     BloodParams params_;
     std::vector<ProgramDesc> programs_;

@@ -42,9 +42,10 @@ class DropRing {
 struct BloodState {
     std::unique_ptr<BloodGpu> gpu;
     bool begun = false;
-    bool bled = false;      ///< blood is or was somewhere
-    bool moving = false;    ///< something may change without a source
-    std::int64_t step = 0;  ///< the next one, on the grid of times
+    bool bled = false;           ///< blood is or was somewhere
+    bool moving = false;         ///< something may change without a source
+    std::int64_t step = 0;       ///< the next one, on the grid of times
+    std::int64_t steps_run = 0;  ///< drops age by these: gaps between frames do not count
     double steps_per_s = 0.0;
     std::uint64_t version = 0;        ///< of what it shows
     std::uint64_t shape_key = 0;      ///< of the mesh, the size and the number of drops

@@ -35,7 +35,7 @@ double Jets::noise() {
 }
 
 void Jets::leave(const WoundParams& wound, std::uint32_t source, const DropMeter::Drops& drops, double pulse,
-                 double dt_s) {
+                 const glm::dvec3& gravity_mm_s2, double dt_s) {
     const double length = glm::length(wound.direction);
     const glm::dvec3 direction = length > 0.0 ? wound.direction / length : glm::dvec3(0.0);
     for (int i = 0; i < drops.count; ++i) {
@@ -47,8 +47,9 @@ void Jets::leave(const WoundParams& wound, std::uint32_t source, const DropMeter
             lost_mm3_ += drops.volume_mm3;
             continue;
         }
-        particles_.push_back({.position_mm = wound.position_mm + start_mm * direction + since * velocity,
-                              .velocity_mm_s = velocity,
+        const glm::dvec3 flown = since * (velocity + 0.5 * since * gravity_mm_s2);
+        particles_.push_back({.position_mm = wound.position_mm + start_mm * direction + flown,
+                              .velocity_mm_s = velocity + since * gravity_mm_s2,
                               .volume_mm3 = drops.volume_mm3,
                               .source = source});
     }

@@ -26,9 +26,9 @@ struct JetParticle {
 class Jets {
   public:
     void clear();
-    /// Blood that leaves a wound during one step.
+    /// Blood that leaves a wound during one step, under a gravity [mm/s^2].
     void leave(const WoundParams& wound, std::uint32_t source, const DropMeter::Drops& drops, double pulse,
-               double dt_s);
+               const glm::dvec3& gravity_mm_s2, double dt_s);
     /// Moves all by one step. What meets the surface is taken away and comes out as new drops; what flies for
     /// too long is lost. `gravity_mm_s2`: acceleration.
     void step(const TriangleTree& surface, const glm::dvec3& gravity_mm_s2, double dt_s,

@@ -4,7 +4,6 @@ uniform vec3 u_colour;
 uniform sampler2D u_depth;
 #endif
 in vec2 v_across;
-flat in vec3 v_side;
 flat in float v_stretch;
 layout(location = 0) out vec4 o_colour;  // premultiplied
 
@@ -20,7 +19,7 @@ void main() {
         discard;
     }
     float facing = sqrt(inside);
-    float gleam = pow(max(facing - 0.35 * v_across.x * v_side.y, 0.0), 24.0);
+    float gleam = pow(clamp(0.95 * facing - 0.31 * v_across.x, 0.0, 1.0), 24.0);
     float opacity = smoothstep(0.0, 0.4, inside);
-    o_colour = opacity * vec4(u_colour * (0.35 + 0.65 * facing) + 0.25 * gleam, 1.0);
+    o_colour = opacity * vec4(u_colour * (0.35 + 0.65 * facing) + 0.2 * gleam, 1.0);
 }

@@ -11,7 +11,6 @@ uniform float u_sealed;
 uniform vec2 u_source[64];      // UV of the wounds
 #endif
 out vec2 v_across;              // -1 to 1 across and along the streak's ends
-flat out vec3 v_side;           // across the streak, in the eye's frame
 flat out float v_stretch;       // half length over radius
 
 void main() {
@@ -34,7 +33,6 @@ void main() {
     radius *= sqrt(1.0 - smoothstep(0.5 * u_sealed, u_sealed, energy));
 #endif
     v_across = vec2(float(gl_VertexID & 1), float(gl_VertexID >> 1)) * 2.0 - 1.0;
-    v_side = side;
     v_stretch = reach / max(radius, 1e-6);
     vec3 corner = centre + v_across.x * radius * side + v_across.y * (reach + radius) * axis;
     gl_Position = radius > 0.0 ? u_projection * vec4(corner, 1.0) : vec4(2.0, 2.0, 2.0, 1.0);

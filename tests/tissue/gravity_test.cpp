@@ -96,16 +96,19 @@ TEST(GravityMap, FollowsMeridiansOfASphere) {
             if (surface.kind[i] == Texel::cell) {
                 const glm::dvec3 p = surface.position[i];
                 const Downhill found = at(map, x, y);
-                worst_way = std::max(worst_way, glm::length(found.direction - glm::dvec2(0.0, 1.0)));
+                worst_way =
+                    std::max(worst_way, std::abs(std::atan2(found.direction.x * surface.metric[i].x,
+                                                            found.direction.y * surface.metric[i].y)));
                 worst_factor =
                     std::max(worst_factor, std::abs(found.factor - std::hypot(p.x, p.y) / glm::length(p)));
             }
         }
     }
     std::printf("  way off by %.1e, share of gravity by %.1e\n", worst_way, worst_factor);
-    // The mesh has facets of a degree.
+    // The mesh has facets of a degree, and at borders, where differences are one-sided, half a texel is
+    // 0.013.
     EXPECT_LT(worst_way, 0.01);
-    EXPECT_LT(worst_factor, 0.01);
+    EXPECT_LT(worst_factor, 0.017);
 }
 
 TEST(GravityMap, IsZeroWhereNothingIsDownhill) {
