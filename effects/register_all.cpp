@@ -13,10 +13,11 @@
 #include "effects/picture/image_effect.h"
 #include "effects/tissue/bake_effect.h"
 #include "effects/tissue/bipolar_effect.h"
-#include "effects/tissue/coagulate_effect.h"
 #include "effects/tissue/blood_account_effect.h"
 #include "effects/tissue/blood_effect.h"
+#include "effects/tissue/coagulate_effect.h"
 #include "effects/tissue/gravity_effect.h"
+#include "effects/tissue/jet_effect.h"
 #include "effects/volume/limits_effect.h"
 #include "effects/volume/ray_cast_effect.h"
 #include "effects/volume/slice_effect.h"
@@ -78,6 +79,8 @@ void register_all(Registry& registry) {
                  [] { return std::make_unique<tissue::GravityEffect>(); });
     registry.add("tissue.blood", "Blood that runs down a surface as drops and as a film.",
                  [] { return std::make_unique<tissue::BloodEffect>(); });
+    registry.add("tissue.jet", "Blood in the air, drawn over a picture.",
+                 [] { return std::make_unique<tissue::JetEffect>(); });
     registry.add("tissue.blood_account", "How much blood the wounds gave, and where it is.",
                  [] { return std::make_unique<tissue::BloodAccountEffect>(); });
     registry.add("filter.gaussian", "One direction of a Gaussian blur.",

@@ -19,6 +19,8 @@ constexpr std::int64_t steps_per_look = 8;
 constexpr double longest_gap_s = 0.5;
 constexpr double smallest_drop_share = 0.02;
 constexpr double latest_s = 1.0e9;
+// Drops of a jet in those of a wound: it is finer.
+constexpr double jet_drop_share = 0.25;
 
 std::int64_t step_at(double time_s, double steps_per_s) {
     // A frame's time that should lie on the grid may miss it by its own rounding.
@@ -134,6 +136,10 @@ Work BloodEffect::prepare(Prepare& prepare) {
     }
     const auto gap = std::max(static_cast<std::int64_t>(longest_gap_s * rate), std::int64_t{1});
     const bool runs = bleeds(std::max(state.step, target_step_ - gap), target_step_);
+    state.jets_bleed = std::ranges::any_of(wounds_, [&](const WoundParams& wound) {
+        return wound.kind == BleedingKind::jet && wound.rate_mm3_s > 0.0 && frame.time_s >= wound.start_s &&
+               frame.time_s < wound.stop_s;
+    });
     if (!state.bled && !runs) {
         state.step = target_step_;
         return Work::idle("there is no blood");
@@ -175,6 +181,9 @@ void BloodEffect::find_places() {
             place.found = true;
             place.uv = glm::vec2(nearest->uv - glm::floor(nearest->uv));
         }
+    }
+    for (std::size_t i = 0; i < places_.size(); ++i) {
+        state_->wound_uvs[i] = medium_.wound_uvs[i] = places_[i].uv;
     }
 }
 
@@ -233,16 +242,42 @@ void BloodEffect::collect_drops(std::int64_t step) {
         if (!places_[i].found || time < wound.start_s || time >= wound.stop_s) {
             continue;
         }
-        const auto drops =
-            state_->meters[i].flow(wound.rate_mm3_s * pulse_of(wound, time) * dt, params_.liquid.drop_mm3);
+        const bool flies = wound.kind == BleedingKind::jet;
+        const auto drops = state_->meters[i].flow(wound.rate_mm3_s * pulse_of(wound, time) * dt,
+                                                  params_.liquid.drop_mm3 * (flies ? jet_drop_share : 1.0));
+        if (flies) {
+            state_->jets.leave(wound, static_cast<std::uint32_t>(i), drops, pulse_of(wound, time),
+                               gravity_mm_s2(), dt);
+            continue;
+        }
         for (int n = 0; n < drops.count; ++n) {
             spawns_.push_back({.uv = places_[i].uv,
                                .volume_mm3 = static_cast<float>(drops.volume_mm3),
                                .radius_mm = static_cast<float>(wound.radius_mm),
-                               .seed = static_cast<float>(state_->seed++ & 0xffffffU),
                                .source = static_cast<float>(i)});
         }
     }
+    fly(dt);
+    for (DropSpawn& spawn : spawns_) {
+        spawn.seed = static_cast<float>(state_->seed++ & 0xffffffU);
+    }
+}
+
+glm::dvec3 BloodEffect::gravity_mm_s2() const {
+    return gravity_.down * (gravity_.strength * standard_gravity_m_s2 * 1000.0);
+}
+
+void BloodEffect::fly(double dt) {
+    if (state_->jets.particles().empty()) {
+        return;
+    }
+    if (tree_key_ != surface_key_) {
+        tree_key_ = surface_key_;
+        tree_ = TriangleTree(mesh_->data(), to_world_);
+    }
+    state_->jets.step(tree_, gravity_mm_s2(), dt, spawns_);
+    state_->bled = state_->moving = true;
+    state_->disturbed_at = state_->looks + 1;
 }
 
 void BloodEffect::run_step(const Pass& pass) {
@@ -250,7 +285,7 @@ void BloodEffect::run_step(const Pass& pass) {
     const std::int64_t step = state.step;
     set_tools(step);
     collect_drops(step);
-    state.ring.pass_to(step);
+    state.ring.pass_to(state.steps_run++);
     // Two looks without a step between them would find that nothing has changed.
     const bool due = step % steps_per_look == 0 && step != state.looked_at;
     if (due || medium_.tools.size() != state.tool_count) {
@@ -299,7 +334,8 @@ void BloodEffect::draw(const Pass& pass) {
             run_step(pass);
         }
         ++state.version;
-        if (const auto still = state.gpu->all_still(); still && *still >= state.disturbed_at) {
+        if (const auto still = state.gpu->all_still();
+            still && *still >= state.disturbed_at && state.jets.particles().empty()) {
             state.moving = false;
             state.ring.forget();
         }

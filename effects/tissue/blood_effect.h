@@ -6,6 +6,7 @@
 
 #include "effects/tissue/blood_params.h"
 #include "effects/tissue/blood_state.h"
+#include "effects/tissue/surface_search.h"
 #include "engine/runtime/effect.h"
 
 namespace viscera::tissue {
@@ -39,6 +40,8 @@ class BloodEffect final : public Effect {
     void update_surface(const Pass& pass);
     void run_step(const Pass& pass);
     void collect_drops(std::int64_t step);
+    void fly(double dt);
+    [[nodiscard]] glm::dvec3 gravity_mm_s2() const;
 
     BloodParams params_;
     std::vector<ProgramDesc> programs_;
@@ -53,6 +56,8 @@ class BloodEffect final : public Effect {
     std::vector<Place> places_;
     std::vector<CleanerParams> tools_;
     std::vector<DropSpawn> spawns_;
+    TriangleTree tree_;  ///< for jets
+    std::uint64_t tree_key_ = 0;
     BloodMedium medium_;
 };
 

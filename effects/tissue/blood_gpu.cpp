@@ -36,8 +36,8 @@ constexpr int spawn_width = 128;  // two texels for each drop
 constexpr int spawn_rows = 16;
 constexpr int deposit_points = 4;
 constexpr int sources = 64;
-// A film that changes by less per step stands [mm].
-constexpr float still_mm = 1e-6F;
+// A film that creeps more slowly stands [mm/s].
+constexpr float still_mm_s = 5e-4F;
 
 std::array<gl::Texture, 2> pair_of(const gl::Functions& gl, int width, int height, PixelFormat format,
                                    const char* label) {
@@ -244,7 +244,7 @@ void BloodGpu::look_at_tiles(const Pass& pass, const BloodMedium& medium, const 
     bind(pass, program, "u_across", across_[before]);
     bind(pass, program, "u_film", film());
     bind(pass, program, "u_film_before", film_[1 - film_now_]);
-    program.set("u_still", still_mm);
+    program.set("u_still", still_mm_s * medium.flow.z);
     program.set("u_all", wake || !medium.tools.empty() || medium.flow.w > 0.0F);
     draw_into(pass, marks_target_[1 - before], gl::overwrite_state);
     pass.draw_fullscreen();
@@ -314,6 +314,7 @@ void BloodGpu::spawn(const Pass& pass, const BloodMedium& medium, std::span<cons
             if (energy) {
                 pass.bind(program, "u_energy", "energy");
                 program.set("u_sealed", medium.sealed_energy);
+                program.set("u_source", std::span<const glm::vec2>(medium.wound_uvs));
             }
             program.set("u_ring",
                         counts ? glm::ivec2(sources, 1) : glm::ivec2(drops_[0].width(), drops_[0].height()));

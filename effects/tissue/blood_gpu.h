@@ -29,7 +29,7 @@ struct DropSpawn {
     float slot = 0.0F;       ///< in the ring
     float seed = 0.0F;
     float source = 0.0F;
-    float unused = 0.0F;
+    float sealed_at_source = 0.0F;  ///< 1: the wound's own tissue decides whether it bleeds, not the place
 };
 
 /// What the steps of one frame have in common, as the shaders want it.
@@ -41,6 +41,7 @@ struct BloodMedium {
     float spreading = 0.0F;  ///< see GravityParams
     float sealed_energy = 1.0F;
     bool open_edges = true;
+    std::array<glm::vec2, 64> wound_uvs{};
     std::vector<glm::vec4> tools;        ///< place [mm], radius [mm]
     std::vector<glm::vec2> tool_powers;  ///< see tool_power()
 };

@@ -8,6 +8,7 @@
 
 #include "effects/tissue/blood_gpu.h"
 #include "effects/tissue/blood_sources.h"
+#include "effects/tissue/jets.h"
 #include "engine/runtime/assets.h"
 
 namespace viscera::tissue {
@@ -41,9 +42,10 @@ class DropRing {
 struct BloodState {
     std::unique_ptr<BloodGpu> gpu;
     bool begun = false;
-    bool bled = false;      ///< blood is or was somewhere
-    bool moving = false;    ///< something may change without a source
-    std::int64_t step = 0;  ///< the next one, on the grid of times
+    bool bled = false;           ///< blood is or was somewhere
+    bool moving = false;         ///< something may change without a source
+    std::int64_t step = 0;       ///< the next one, on the grid of times
+    std::int64_t steps_run = 0;  ///< drops age by these: gaps between frames do not count
     double steps_per_s = 0.0;
     std::uint64_t version = 0;        ///< of what it shows
     std::uint64_t shape_key = 0;      ///< of the mesh, the size and the number of drops
@@ -57,8 +59,9 @@ struct BloodState {
     DropRing ring;
     std::vector<DropMeter> meters;
     std::uint32_t seed = 0;
-    double flying_mm3 = 0.0;  ///< of jets in the air
-    double lost_mm3 = 0.0;    ///< of jets that met nothing
+    Jets jets;
+    bool jets_bleed = false;  ///< a wound sends out a jet in this frame
+    std::array<glm::vec2, most_wounds> wound_uvs{};
 
     /// The state of a name, made when it is first asked for.
     [[nodiscard]] static std::shared_ptr<BloodState> find(Assets& assets, std::string_view name);

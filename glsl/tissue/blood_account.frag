@@ -12,7 +12,7 @@ const int side = 64;
 void main() {
     ivec2 at = ivec2(gl_FragCoord.xy);
     int index = at.y * side + at.x;
-    o_account = index == 0 ? vec4(0.0, 0.0, u_flying, u_lost) : vec4(0.0);
+    o_account = index == 0 ? vec4(u_flying + u_lost, 0.0, u_flying, u_lost) : vec4(0.0);
     if (index < textureSize(u_ledger, 0).x) {
         o_account.x += texelFetch(u_ledger, ivec2(index, 0), 0).r;
     }

@@ -22,16 +22,15 @@ void main() {
     vec2 size = vec2(textureSize(u_film, 0));
     if (u_whole) {
         deposit.xy *= size;
-        deposit.w = 1.0;
+        deposit.w = drop_radius(max(deposit.z, 0.0));
     }
     gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
     v_added = vec2(0.0);
     if (deposit.z > 0.0) {
         vec2 at = deposit.xy;
-        if (deposit.w < 1.5) {
+        if (deposit.w >= 0.0) {
             vec4 metric = texelFetch(u_metric, ivec2(floor(at)), 0);
-            float radius = drop_radius(max(deposit.z, u_drop.w));
-            float r = radius * sqrt((float(k) + drop_noise(uint(index), uint(u_salt))) / float(points));
+            float r = deposit.w * sqrt((float(k) + drop_noise(uint(index), uint(u_salt))) / float(points));
             float angle = 6.2831853 * (drop_noise(uint(index), uint(u_salt) + 77777u) + 0.38196601 * float(k));
             vec2 offset = clamp(texels_of(r * vec2(cos(angle), sin(angle)), metric), vec2(-12.0), vec2(12.0));
             vec3 to = place_on_surface(at + offset);
@@ -39,7 +38,7 @@ void main() {
         }
         ivec2 texel = ivec2(floor(at));
         float added = 0.25 * deposit.z / texelFetch(u_film, texel, 0).w;
-        v_added = deposit.w < 1.5 ? vec2(added, 0.0) : vec2(0.0, added);
+        v_added = deposit.w >= 0.0 ? vec2(added, 0.0) : vec2(0.0, added);
         gl_Position = vec4(2.0 * (vec2(texel) + 0.5) / size - 1.0, 0.0, 1.0);
     }
 }

@@ -12,7 +12,7 @@ uniform bool u_open;
 #include "tissue/blood_tools.glsl"
 #endif
 layout(location = 0) out vec4 o_drop;
-layout(location = 1) out vec4 o_deposit;  // where [texels], volume [mm^3]; w: 1 to the film, 2 off the surface
+layout(location = 1) out vec4 o_deposit;  // where [texels], volume [mm^3], radius of the drop [mm]; -1: it left the surface
 
 const float longest_step = 2.0;  // [texels]
 const float giving_up_s = 0.05;
@@ -57,15 +57,15 @@ void main() {
         deposit = max(deposit, volume * (1.0 - exp(-dt / giving_up_s)));
     }
     float left = max(volume - deposit, 0.0);
-    float target = 1.0;
+    float target = radius;
     if (falls && u_open) {
         left = 0.0;
-        target = 2.0;
+        target = -1.0;
     }
 #ifdef TOOLS
     if (taken(ivec2(floor(from)), height) > 0.1 * height) {
         left = 0.0;
-        target = 2.0;
+        target = -1.0;
     }
 #endif
     left = left < u_drop.w || drop.w > u_drop.z + longest_end_s ? 0.0 : left;

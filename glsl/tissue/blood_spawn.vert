@@ -2,11 +2,12 @@
 #include "tissue/blood_place.glsl"
 #include "tissue/blood_drop.glsl"
 // New drops, each a point at its place in the ring.
-uniform sampler2D u_spawn;  // two texels for each: u, v, volume [mm^3], radius of the source [mm]; place in the ring, seed, source, -
+uniform sampler2D u_spawn;  // two texels for each: u, v, volume [mm^3], radius of the source [mm]; place in the ring, seed, source, see u_source
 uniform sampler2D u_metric;
 #ifdef ENERGY
 uniform sampler2D u_energy;
-uniform float u_sealed;  // energy at which tissue no longer bleeds
+uniform float u_sealed;      // energy at which tissue no longer bleeds
+uniform vec2 u_source[64];   // UV of the wounds: what flew decides there, not where it came down
 #endif
 uniform ivec2 u_ring;  // size of the ring's texture, or of the ledger: volume by source
 flat out vec4 v_drop;
@@ -29,7 +30,8 @@ void main() {
     }
     float volume = at.z > 0.0 ? source.z : 0.0;
 #ifdef ENERGY
-    float energy = texelFetch(u_energy, ivec2(at.xy / size * vec2(textureSize(u_energy, 0))), 0).r;
+    vec2 decides = more.w > 0.5 ? u_source[int(more.z)] : at.xy / size;
+    float energy = texelFetch(u_energy, ivec2(clamp(decides, 0.0, 0.9999) * vec2(textureSize(u_energy, 0))), 0).r;
     volume *= 1.0 - smoothstep(0.5 * u_sealed, u_sealed, energy);
 #endif
     v_drop = vec4(at.xy / size, volume, 0.0);

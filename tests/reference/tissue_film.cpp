@@ -231,7 +231,19 @@ void Film::step(const TissueSurface& s, const Flow& flow, const FilmParams& p, d
         change[link.from] -= volume;
         change[link.to] += volume;
     }
+    // Gutters show what lay across the seam before the step.
+    std::vector<double> across(height_mm.size(), 0.0);
     for (std::size_t i = 0; i < height_mm.size(); ++i) {
+        if (s.kind[i] == Texel::gutter) {
+            const glm::ivec2 to(glm::floor(s.seam[i] * glm::dvec2(s.width, s.height)));
+            across[i] =
+                height_mm[s.index(std::clamp(to.x, 0, s.width - 1), std::clamp(to.y, 0, s.height - 1))];
+        }
+    }
+    for (std::size_t i = 0; i < height_mm.size(); ++i) {
+        if (s.kind[i] == Texel::gutter) {
+            height_mm[i] = across[i];
+        }
         if (flow.area_mm2[i] > 0.0) {
             double h = height_mm[i] + change[i] / flow.area_mm2[i];
             const double dried = std::min(std::max(h, 0.0), p.drying_mm_s * dt);

@@ -29,6 +29,7 @@ std::span<const Case> all_cases() {
         {"filters", "time per sample of a volume by filter, beside its error", run_filters},
         {"organ", "the organ by feature, against the textured organ", run_organ},
         {"curvilinear", "cylindrical and spherical volumes against a box of as many voxels", run_curvilinear},
+        {"tissue_blood", "a step of blood against copies of a picture of its size", run_blood},
     }};
     return cases;
 }

@@ -40,5 +40,6 @@ void run_quality(Lab& lab);
 void run_filters(Lab& lab);
 void run_organ(Lab& lab);
 void run_curvilinear(Lab& lab);
+void run_blood(Lab& lab);
 
 }  // namespace viscera::app

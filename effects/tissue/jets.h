@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "effects/tissue/blood_gpu.h"
+#include "effects/tissue/blood_sources.h"
+#include "effects/tissue/surface_search.h"
+
+namespace viscera::tissue {
+
+/// Blood in the air.
+struct JetParticle {
+    glm::dvec3 position_mm{0.0};
+    glm::dvec3 velocity_mm_s{0.0};
+    double volume_mm3 = 0.0;
+    double age_s = 0.0;
+    std::uint32_t source = 0;  ///< index of the wound
+};
+
+/// Jets of blood: particles that fly freely until they meet a surface. The same steps give the same
+/// particles.
+class Jets {
+  public:
+    void clear();
+    /// Blood that leaves a wound during one step, under a gravity [mm/s^2].
+    void leave(const WoundParams& wound, std::uint32_t source, const DropMeter::Drops& drops, double pulse,
+               const glm::dvec3& gravity_mm_s2, double dt_s);
+    /// Moves all by one step. What meets the surface is taken away and comes out as new drops; what flies for
+    /// too long is lost. `gravity_mm_s2`: acceleration.
+    void step(const TriangleTree& surface, const glm::dvec3& gravity_mm_s2, double dt_s,
+              std::vector<DropSpawn>& hits);
+
+    [[nodiscard]] std::span<const JetParticle> particles() const { return particles_; }
+    [[nodiscard]] double flying_mm3() const;
+    [[nodiscard]] double lost_mm3() const { return lost_mm3_; }
+
+  private:
+    [[nodiscard]] double noise();
+
+    std::vector<JetParticle> particles_;
+    double lost_mm3_ = 0.0;
+    std::uint64_t drawn_ = 0;
+};
+
+}  // namespace viscera::tissue

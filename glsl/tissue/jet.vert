@@ -1,0 +1,40 @@
+#version 330 core
+// A drop in the air as a streak along its way while the picture is taken.
+uniform sampler2D u_particles;  // two texels for each: place [mm], radius [mm]; velocity [mm/s], source
+uniform mat4 u_to_eye;
+uniform mat4 u_projection;
+uniform float u_exposure;       // [s]
+uniform bool u_parallel;        // orthographic
+#ifdef ENERGY
+uniform sampler2D u_energy;
+uniform float u_sealed;
+uniform vec2 u_source[64];      // UV of the wounds
+#endif
+out vec2 v_across;              // -1 to 1 across and along the streak's ends
+flat out float v_stretch;       // half length over radius
+
+void main() {
+    int width = textureSize(u_particles, 0).x;
+    int i = 2 * gl_InstanceID;
+    vec4 place = texelFetch(u_particles, ivec2(i % width, i / width), 0);
+    vec4 motion = texelFetch(u_particles, ivec2(i % width + 1, i / width), 0);
+    vec3 centre = (u_to_eye * vec4(place.xyz, 1.0)).xyz;
+    vec3 half_way = 0.5 * u_exposure * (u_to_eye * vec4(motion.xyz, 0.0)).xyz;
+    vec3 sight = u_parallel ? vec3(0.0, 0.0, -1.0) : centre / max(length(centre), 1e-6);
+    vec3 along = half_way - dot(half_way, sight) * sight;
+    float reach = length(along);
+    vec3 axis = reach > 1e-6 ? along / reach : normalize(cross(sight, vec3(0.57, 0.61, 0.55)));
+    vec3 side = cross(axis, sight);
+    // A longer streak is a thinner one of the same volume.
+    float radius = place.w * inversesqrt(1.0 + reach / max(place.w, 1e-6));
+#ifdef ENERGY
+    vec2 size = vec2(textureSize(u_energy, 0));
+    float energy = texelFetch(u_energy, ivec2(clamp(u_source[int(motion.w)], 0.0, 0.9999) * size), 0).r;
+    radius *= sqrt(1.0 - smoothstep(0.5 * u_sealed, u_sealed, energy));
+#endif
+    v_across = vec2(float(gl_VertexID & 1), float(gl_VertexID >> 1)) * 2.0 - 1.0;
+    v_stretch = reach / max(radius, 1e-6);
+    vec3 corner = centre + v_across.x * radius * side + v_across.y * (reach + radius) * axis;
+    gl_Position = radius > 0.0 ? u_projection * vec4(corner, 1.0) : vec4(2.0, 2.0, 2.0, 1.0);
+    v_across.y *= v_stretch + 1.0;
+}

@@ -1,0 +1,68 @@
+#include "samples/viscera/bench/cases.h"
+#include "samples/viscera/bench/scene_text.h"
+
+namespace viscera::app {
+namespace {
+
+constexpr double step_goal = 4.0;
+constexpr double steps_per_s = 120.0;
+
+/// Blood on a tube that fills the texture, one step of the simulation per frame, beside a plain copy of a
+/// picture of the film's size.
+nlohmann::json blood_scene(Lab& lab, const nlohmann::json& wounds, int max_drops) {
+    const int size = lab.options().width;
+    const nlohmann::json mesh{{"file", "../meshes/tube.glb"}};
+    SceneText scene(lab.empty_scene());
+    scene.pass("bake", "tissue.bake", {{"mesh", mesh}, {"size", size}})
+        .pass("gravity", "tissue.gravity", {{"size", size}})
+        .pass("blood", "tissue.blood",
+              {{"mesh", mesh},
+               {"size", size},
+               {"state", "bench" + std::to_string(max_drops)},
+               {"liquid", {{"steps_per_s", steps_per_s}, {"max_drops", max_drops}}},
+               {"wounds", wounds}})
+        .target("picture", "rgba32f")
+        .target("copy", "rgba32f")
+        .pass("source", "bench.source", {{"amount", 1.0}}, {{"out", "picture"}})
+        .pass("copy", "bench.copy1", nullptr, {{"a", "picture"}, {"out", "copy"}});
+    for (const char* name : {"tissue.blood_height", "tissue.blood_color", "tissue.blood_normal", "copy",
+                             "tissue.flow_right", "tissue.flow_top", "tissue.position", "tissue.metric"}) {
+        scene.output(name);
+    }
+    return scene.json();
+}
+
+nlohmann::json wounds_along(int count, double rate_mm3_s) {
+    nlohmann::json wounds = nlohmann::json::array();
+    for (int i = 0; i < count; ++i) {
+        const double z = -30.0 + 60.0 * (i + 0.5) / count;
+        wounds.push_back({{"position_mm", {0.0, -20.0, z}}, {"rate_mm3_s", rate_mm3_s}});
+    }
+    return wounds;
+}
+
+}  // namespace
+
+void run_blood(Lab& lab) {
+    const int size = lab.options().width;
+    const std::string at = " at " + std::to_string(size) + "^2";
+    const auto measure = [&](const std::string& name, const nlohmann::json& wounds, int max_drops, int warm) {
+        Stage stage(lab, blood_scene(lab, wounds, max_drops),
+                    {.time_s = 0.0, .step_s = 1.0 / steps_per_s, .warm = warm});
+        stage.run();
+        lab.add({.group = "blood",
+                 .name = name + at,
+                 .samples = stage.pass("blood"),
+                 .ceiling = "copy of one rgba32f picture of that size",
+                 .base = stage.pass("copy"),
+                 .goal = step_goal});
+    };
+    measure("a step, 1 wound after 1 s", wounds_along(1, 30.0), 16384, 120);
+    measure("a step, 4 wounds after 2 s", wounds_along(4, 30.0), 16384, 240);
+    if (lab.hardware()) {
+        // Each wound gives 9 drops a step at most; more blood makes them larger.
+        measure("a step, 100000 drops", wounds_along(64, 270.0), 102400, 360);
+    }
+}
+
+}  // namespace viscera::app
