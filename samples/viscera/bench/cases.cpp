@@ -5,7 +5,7 @@
 namespace viscera::app {
 
 std::span<const Case> all_cases() {
-    static constexpr std::array<Case, 21> cases{{
+    static constexpr std::array<Case, 22> cases{{
         {"ceilings", "copy and clear per format, fetches, exp, vertices, triangles", run_ceilings},
         {"readback", "read-back per format, waiting and not waiting", run_read_back},
         {"geometry", "one pass over the vessels against three", run_geometry},
@@ -27,6 +27,8 @@ std::span<const Case> all_cases() {
         {"skipping", "empty bricks left out, by how many are occupied", run_skipping},
         {"quality", "the ray caster's knobs, one at a time", run_quality},
         {"filters", "time per sample of a volume by filter, beside its error", run_filters},
+        {"tissue_bake", "a surface whose vertices move, as textures, against copies of the same bytes",
+         run_tissue_bake},
     }};
     return cases;
 }

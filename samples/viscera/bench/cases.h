@@ -38,5 +38,6 @@ void run_steps(Lab& lab);
 void run_skipping(Lab& lab);
 void run_quality(Lab& lab);
 void run_filters(Lab& lab);
+void run_tissue_bake(Lab& lab);
 
 }  // namespace viscera::app
