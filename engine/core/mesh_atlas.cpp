@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "engine/core/error.h"
 #include "engine/core/mesh_adjacency.h"
@@ -36,38 +35,39 @@ void project(FlatChart& chart, std::span<const glm::vec3> positions, const glm::
     }
 }
 
-/// Turns a chart so that the box around it is smallest and lies on its longer side.
+/// Turns a chart so that the box around it is smallest and lies on its longer side. Directions come from a
+/// walk along a diamond: sums and roots only, so that every machine finds the same one.
 void turn(FlatChart& chart) {
-    constexpr int angles = 48;
-    double least = far_away;
-    double best_angle = 0.0;
-    const auto turned = [](const glm::dvec2& p, double angle) {
-        const double c = std::cos(angle);
-        const double s = std::sin(angle);
-        return glm::dvec2(c * p.x - s * p.y, s * p.x + c * p.y);
+    constexpr int directions = 48;
+    const auto direction = [](int i) {
+        const double way = static_cast<double>(i) / directions;
+        return glm::normalize(glm::dvec2(1.0 - 2.0 * way, std::min(2.0 * way, 2.0 - 2.0 * way)));
     };
-    const auto box = [&](double angle) {
+    const auto turned = [](const glm::dvec2& p, const glm::dvec2& d) {
+        return glm::dvec2(d.x * p.x - d.y * p.y, d.y * p.x + d.x * p.y);
+    };
+    const auto box = [&](const glm::dvec2& d) {
         glm::dvec2 low(far_away);
         glm::dvec2 high(-far_away);
         for (const glm::dvec2& p : chart.places) {
-            low = glm::min(low, turned(p, angle));
-            high = glm::max(high, turned(p, angle));
+            low = glm::min(low, turned(p, d));
+            high = glm::max(high, turned(p, d));
         }
         return std::pair(low, high);
     };
-    for (int i = 0; i < angles; ++i) {
-        const double angle = i * std::numbers::pi / angles;
-        const auto [low, high] = box(angle);
+    double least = far_away;
+    glm::dvec2 best(1.0, 0.0);
+    for (int i = 0; i < directions; ++i) {
+        const auto [low, high] = box(direction(i));
         const glm::dvec2 size = high - low;
-        const double area = size.x * size.y;
-        if (size.x >= size.y && area < least) {
-            least = area;
-            best_angle = angle;
+        if (size.x >= size.y && size.x * size.y < least) {
+            least = size.x * size.y;
+            best = direction(i);
         }
     }
-    const auto [low, high] = box(best_angle);
+    const auto [low, high] = box(best);
     for (glm::dvec2& p : chart.places) {
-        p = turned(p, best_angle) - low;
+        p = turned(p, best) - low;
     }
     chart.size = high - low;
 }
@@ -233,6 +233,7 @@ UvUse measure_uvs(std::span<const glm::vec2> uvs, std::span<const std::uint32_t>
     std::vector<unsigned char> count(static_cast<std::size_t>(side) * side, 0);
     UvUse use;
     double area = 0.0;
+    double flat = 0.0;
     for (std::size_t t = 0; t + 2 < indices.size(); t += 3) {
         std::array<glm::dvec2, 3> corner;
         for (std::size_t k = 0; k < 3; ++k) {
@@ -241,7 +242,9 @@ UvUse measure_uvs(std::span<const glm::vec2> uvs, std::span<const std::uint32_t>
             constexpr double slack = 1e-5;
             use.beyond = use.beyond || std::min(uv.x, uv.y) < -slack || std::max(uv.x, uv.y) > 1.0 + slack;
         }
-        area += 0.5 * std::abs(cross2(corner[1] - corner[0], corner[2] - corner[0]));
+        const double twice = std::abs(cross2(corner[1] - corner[0], corner[2] - corner[0]));
+        area += 0.5 * twice;
+        flat += twice > 0.0 ? 0.0 : 1.0;
         // With several times the texture's area most of it is covered twice: no need to look at every texel.
         constexpr double several = 4.0 * side * side;
         const bool seen =
@@ -258,6 +261,7 @@ UvUse measure_uvs(std::span<const glm::vec2> uvs, std::span<const std::uint32_t>
     }
     const auto covered = std::ranges::count_if(count, [](unsigned char n) { return n > 0; });
     const auto twice = std::ranges::count_if(count, [](unsigned char n) { return n > 1; });
+    use.flat = indices.empty() ? 0.0 : 3.0 * flat / static_cast<double>(indices.size());
     use.covered = static_cast<double>(covered) / static_cast<double>(count.size());
     use.overlap = covered > 0 ? static_cast<double>(twice) / static_cast<double>(covered) : 0.0;
     return use;

@@ -38,6 +38,7 @@ struct MeshAtlas {
 struct UvUse {
     double covered = 0.0;  ///< share of the texture that triangles cover, on a grid of 512 x 512
     double overlap = 0.0;  ///< share of that which more than one triangle covers
+    double flat = 0.0;     ///< share of the triangles that have no area in the texture
     bool beyond = false;   ///< some coordinates lie outside [0, 1]
 };
 /// Coordinates beyond [0, 1] repeat.

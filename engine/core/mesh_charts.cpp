@@ -14,10 +14,10 @@ namespace viscera {
 namespace {
 
 constexpr std::uint32_t none = MeshAdjacency::none;
-// Charts grow up to the first; steeper triangles than the second are cut out of them. Lengths shrink by the
+// Charts grow up to 48 degrees; triangles that are steeper than 65 are cut out of them. Lengths shrink by the
 // cosine.
-const double grown_cosine = std::cos(glm::radians(48.0));
-const double kept_cosine = std::cos(glm::radians(65.0));
+constexpr double grown_cosine = 0.66913;
+constexpr double kept_cosine = 0.42262;
 constexpr int rounds = 12;
 
 glm::dvec3 unit_or(const glm::dvec3& v, const glm::dvec3& otherwise) {

@@ -152,10 +152,10 @@ MeshData concatenate(std::span<const MeshData> meshes) {
         return merged;
     }
     merged.name = meshes.front().name;
-    bool all_uvs = true;
+    bool any_uvs = false;
     bool all_normals = true;
     for (const MeshData& mesh : meshes) {
-        all_uvs = all_uvs && mesh.uvs.size() == mesh.positions.size();
+        any_uvs = any_uvs || !mesh.uvs.empty();
         all_normals = all_normals && mesh.normals.size() == mesh.positions.size();
         for (const VertexScalars& scalars : mesh.scalars) {
             if (std::ranges::find(merged.scalars, scalars.name, &VertexScalars::name) ==
@@ -170,8 +170,9 @@ MeshData concatenate(std::span<const MeshData> meshes) {
             throw Error(ErrorCode::limit, merged.name, "has more vertices than 32-bit indices can name");
         }
         merged.positions.insert(merged.positions.end(), mesh.positions.begin(), mesh.positions.end());
-        if (all_uvs) {
+        if (any_uvs) {
             merged.uvs.insert(merged.uvs.end(), mesh.uvs.begin(), mesh.uvs.end());
+            merged.uvs.resize(merged.positions.size());
         }
         if (all_normals) {
             merged.normals.insert(merged.normals.end(), mesh.normals.begin(), mesh.normals.end());

@@ -30,9 +30,8 @@ struct MeshOptions {
 [[nodiscard]] std::vector<MeshData> load_meshes(const std::filesystem::path& file, const MeshOptions& options,
                                                 Log& log);
 
-/// All meshes as one, in their order, with the first one's name. Texture coordinates stay only if every mesh
-/// with triangles has them; normals are computed where some mesh lacks them; a scalar that a mesh lacks is 0
-/// there.
+/// All meshes as one, in their order, with the first one's name. Where some have texture coordinates, the
+/// others get (0, 0); normals are computed where some mesh lacks them; a scalar that a mesh lacks is 0 there.
 [[nodiscard]] MeshData merge(std::span<const MeshData> meshes);
 
 /// Unit vertex normals, the mean of the triangles' weighted by their angle at the vertex.

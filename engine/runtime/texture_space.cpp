@@ -21,6 +21,9 @@ constexpr std::array<std::string_view, 3> source_names{"automatic", "file", "gen
 // Less than this is a stray texel between charts that touch.
 constexpr double least_overlap = 0.01;
 
+// A few triangles without area happen; a part of the mesh must not.
+constexpr double most_flat = 0.01;
+
 std::string percent(double share) {
     std::array<char, 16> text{};
     std::snprintf(text.data(), text.size(), "%.0f %%", 100.0 * share);
@@ -38,6 +41,9 @@ std::string fault_of(const MeshData& mesh) {
     }
     if (use.overlap > least_overlap) {
         return "puts several triangles on one place of the texture (" + percent(use.overlap) + " of it)";
+    }
+    if (use.flat > most_flat) {
+        return "has no texture coordinates for " + percent(use.flat) + " of its triangles";
     }
     if (use.beyond) {
         return "has texture coordinates outside [0, 1]";

@@ -178,7 +178,7 @@ MeshData triangle(float x) {
 TEST(Merge, JoinsIndicesScalarsAndNormals) {
     MeshData a = triangle(0.0F);
     a.name = "a";
-    a.uvs.resize(3);
+    a.uvs.assign(3, glm::vec2(0.5F));
     a.scalars = {{"_T", {1, 2, 3}}};
     MeshData b = triangle(5.0F);
     b.scalars = {{"_U", {4, 5, 6}}};
@@ -186,7 +186,10 @@ TEST(Merge, JoinsIndicesScalarsAndNormals) {
     test::expect_valid(merged);
     EXPECT_EQ(merged.name, "a");
     EXPECT_EQ(merged.indices, (std::vector<std::uint32_t>{0, 1, 2, 3, 4, 5}));
-    EXPECT_TRUE(merged.uvs.empty());
+    ASSERT_EQ(merged.uvs.size(), 6U);
+    EXPECT_EQ(merged.uvs[2], glm::vec2(0.5F));
+    EXPECT_EQ(merged.uvs[3], glm::vec2(0.0F));
+    EXPECT_TRUE(merge(std::vector<MeshData>{b, b}).uvs.empty());
     EXPECT_EQ(merged.normals[5], glm::vec3(0.0F, 0.0F, 1.0F));
     ASSERT_EQ(merged.scalars.size(), 2U);
     EXPECT_EQ(merged.scalars[0].values, (std::vector<float>{1, 2, 3, 0, 0, 0}));

@@ -30,6 +30,8 @@ std::span<const Case> all_cases() {
         {"organ", "the organ by feature, against the textured organ", run_organ},
         {"curvilinear", "cylindrical and spherical volumes against a box of as many voxels", run_curvilinear},
         {"tissue_blood", "a step of blood against copies of a picture of its size", run_blood},
+        {"tissue_bake", "a surface whose vertices move, as textures, against copies of the same bytes",
+         run_tissue_bake},
     }};
     return cases;
 }

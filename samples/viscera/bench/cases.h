@@ -41,5 +41,6 @@ void run_filters(Lab& lab);
 void run_organ(Lab& lab);
 void run_curvilinear(Lab& lab);
 void run_blood(Lab& lab);
+void run_tissue_bake(Lab& lab);
 
 }  // namespace viscera::app
