@@ -5,7 +5,7 @@
 namespace viscera::app {
 
 std::span<const Case> all_cases() {
-    static constexpr std::array<Case, 22> cases{{
+    static constexpr std::array<Case, 25> cases{{
         {"ceilings", "copy and clear per format, fetches, exp, vertices, triangles", run_ceilings},
         {"readback", "read-back per format, waiting and not waiting", run_read_back},
         {"geometry", "one pass over the vessels against three", run_geometry},
