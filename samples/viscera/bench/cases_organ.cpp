@@ -85,28 +85,27 @@ void run_organ(Lab& lab) {
         const std::string number = std::to_string(i);
         targets["colour"] = "bench.colour" + number;
         targets["depth"] = "bench.depth" + number;
-        scene.pass(features[i].name, "organ.surface", features[i].parameters, targets);
+        scene.pass("feature" + number, "organ.surface", features[i].parameters, targets);
         scene.output("bench.colour" + number);
     }
     const std::string last = "bench.colour" + std::to_string(features.size() - 1);
-    scene.pass("depth of field", "organ.depth_of_field", json::object(),
+    scene.pass("depth_of_field", "organ.depth_of_field", json::object(),
                {{"colour", last}, {"picture", "bench.final"}});
     scene.output("bench.final");
 
     Stage stage(lab, scene.json());
     stage.run();
-    const Samples& base = stage.pass("textured");
-    for (const Feature& feature : features) {
-        const bool is_base = std::string_view(feature.name) == "textured";
+    const Samples& base = stage.pass("feature0");
+    for (std::size_t i = 0; i < features.size(); ++i) {
         lab.add({.group = "organ",
-                 .name = feature.name,
-                 .samples = stage.pass(feature.name),
-                 .ceiling = is_base ? "" : "textured",
-                 .base = is_base ? Samples() : base});
+                 .name = features[i].name,
+                 .samples = stage.pass("feature" + std::to_string(i)),
+                 .ceiling = i == 0 ? "" : "textured",
+                 .base = i == 0 ? Samples() : base});
     }
     lab.add({.group = "organ",
              .name = "depth of field, 48 taps",
-             .samples = stage.pass("depth of field"),
+             .samples = stage.pass("depth_of_field"),
              .ceiling = "textured",
              .base = base});
 }
