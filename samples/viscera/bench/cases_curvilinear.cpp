@@ -27,7 +27,7 @@ std::array<Probe, 2> probes() {
                .angle_rad = 2.0 * pi,
                .wrap = true,
                .height_mm = 60.0},
-              {80, 256, 64}},
+              {48, 128, 40}},
              {"spherical",
               {.kind = VolumeKind::spherical,
                .r_min_mm = 4.0,
@@ -35,7 +35,7 @@ std::array<Probe, 2> probes() {
                .angle_rad = 2.0 * pi,
                .wrap = true,
                .latitude_rad = 2.4},
-              {192, 96, 80}}}};
+              {112, 56, 48}}}};
 }
 
 /// Speckles that widen with the distance from the axis, as a probe's resolution does, around a tube.
