@@ -373,6 +373,10 @@ void CoagulateEffect::draw(const Pass& pass) {
     program.set("u_tile_texels", static_cast<float>(TileTree::tile_texels));
     program.set("u_e_max", static_cast<float>(params_.max_energy));
     program.set("u_limit", limit_);
+    GLint bits = 0;
+    pass.gl().GetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0,
+                                                  GL_FRAMEBUFFER_ATTACHMENT_RED_SIZE, &bits);
+    program.set("u_half", bits == 16);
     pass.draw_generated(GL_TRIANGLE_STRIP, 4, static_cast<int>(drawn_tiles_.size()));
     began_ = true;
     last_time_s_ = time_s_;

@@ -13,7 +13,8 @@
 namespace viscera {
 namespace {
 
-// Requests of one target under way; a GPU that is farther behind is asked again when it has caught up.
+// Requests of one target under way, or 1 where they share a mirror. A GPU that is farther behind is asked
+// again when it has caught up, for all that has changed by then.
 constexpr std::size_t most_requests = 4;
 
 std::size_t bytes_of(const PixelRegion& region, PixelFormat format) {
@@ -131,7 +132,7 @@ void TargetWatch::frame_done(Executor& executor, std::uint64_t index, double tim
         } else if (output->texture == nullptr) {
             drop(entry);
             show_clear(entry, request, clear_image(content));
-        } else if (entry.requests.size() < most_requests) {
+        } else if (entry.requests.size() < (path_ == WatchPath::buffered ? most_requests : 1)) {
             const PixelRegion all(PixelRect{0, 0, content.width, content.height});
             request.region = executor.changed(entry.asked_key, output->key).value_or(all);
             ask(entry, executor.framebuffer(*output), *output->texture, std::move(request));
@@ -165,12 +166,6 @@ void TargetWatch::ask(Entry& entry, const gl::Framebuffer& source, const gl::Tex
         gl_.BindBuffer(GL_PIXEL_PACK_BUFFER, 0);
     } else {
         copy_to_mirror(entry, source, texture, request.region);
-        // The mirror holds one state: what of the older ones has not been fetched comes with this one.
-        for (const Request& older : entry.requests) {
-            request.region.add(older.region);
-            gl_.DeleteSync(older.fence);
-        }
-        entry.requests.clear();
     }
     request.fence = gl_.FenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
     gl_.Flush();  // else one who only polls may never see the fence reached

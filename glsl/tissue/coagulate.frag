@@ -10,6 +10,7 @@ uniform sampler2D u_list;      // numbers of contacts, four to an item
 uniform float u_size;          // texels along each side of the target
 uniform float u_keep;          // 0: begin with nothing
 uniform float u_e_max;
+uniform bool u_half;           // the target holds half floats
 uniform vec4 u_limit;          // a place, and the square of the distance from it outside which nothing changes
 #ifndef METRIC_UV
 uniform sampler2D u_position;
@@ -25,6 +26,14 @@ float with_dose(float e, vec3 sums, vec3 largest) {
     e = coagulated(e, dose.x);
     e = sounded(e, dose.y, u_e_max);
     return dissected(e, dose.z, u_e_max);
+}
+
+// Software renderers cut the digits off that a half float has no room for. A state would creep towards 0 with
+// each increment that is too small for it, so it is rounded to nearest here.
+float storable(float e) {
+    uint bits = floatBitsToUint(e);
+    uint nearest = (bits + 0x0fffu + ((bits >> 13) & 1u)) & ~0x1fffu;
+    return u_half ? uintBitsToFloat(nearest) : e;
 }
 
 void main() {
@@ -60,5 +69,5 @@ void main() {
         add_contact(list_item(u_contacts, number), list_item(u_contacts, number + 1), kind, place, sums, largest);
     }
     e = within ? with_dose(changed, sums, largest) : e;
-    o_energy = clamp(e, -largest_energy, largest_energy);
+    o_energy = storable(clamp(e, -largest_energy, largest_energy));
 }

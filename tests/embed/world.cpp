@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "effects/register_all.h"
+#include "engine/io/exr.h"
 #include "engine/io/mesh.h"
 #include "engine/io/png.h"
 
@@ -90,6 +91,8 @@ World::World() {
     io::write_png(folder_ / "background.png", gradient(24, 0.4F, 0.9F));
     io::write_png(folder_ / "smoke_a.png", gradient(16, 0.1F, 0.8F));
     io::write_png(folder_ / "smoke_b.png", gradient(16, 0.9F, 0.2F));
+    const io::ExrPart energy{.name = "tissue.energy", .image = make_image(64, 64, PixelFormat::r32f)};
+    io::write_exr(folder_ / "energy.exr", std::span(&energy, 1));
     Log log;
     vertices_ = io::merge(io::load_meshes(tube, {}, log)).positions.size();
 }
@@ -147,6 +150,12 @@ Scene World::everything() const {
      "parameters": {"mesh": {"file": "tube.obj"}, "size": 64, "wounds": [{"position_mm": [5, 0, 0], "rate_mm3_s": 200},
        {"position_mm": [5, 0, 10], "rate_mm3_s": 300, "kind": "jet", "direction": [1, 0, 0], "speed_mm_s": 200}]}},
     {"name": "account", "effect": "tissue.blood_account"},
+    {"name": "coagulate", "effect": "tissue.coagulate",
+     "parameters": {"mesh": {"file": "tube.obj"}, "size": 64, "load": {"file": "energy.exr", "time_s": 0},
+       "contacts": [{"from_mm": [5, 0, 0], "to_mm": [5, 0, 9], "power": 2}]}},
+    {"name": "bipolar", "effect": "tissue.coagulate_bipolar",
+     "parameters": {"mesh": {"file": "tube.obj"}, "size": 64, "held": [0, 1, 2, 100], "max_uv_perimeter": 10,
+       "tool": {"shape": "sphere", "size_mm": [1, 1, 40]}}},
     {"name": "organ", "effect": "organ.surface",
      "parameters": {"mesh": {"file": "tube.obj"}, "diffuse_map": "smoke_a.png", "focus": {"focus_mm": 300, "far_mm": 340}}},
     {"name": "jet", "effect": "tissue.jet"},
@@ -167,7 +176,7 @@ Scene World::everything() const {
   "targets": {"contrast.capillary": {"scale": 0.5}, "tissue.blood_spill": {"size": [64, 64]}},
   "outputs": ["final", "contrast.distance_view", "contrast.mask", "contrast.reflux", "contrast.extravasate",
               "alone.cloud", "alone.distance", "depth.main", "painter.main", "host.main", "volume.colour",
-              "volume.slice", "organ.final", "tissue.position", "tissue.blood_account"]
+              "volume.slice", "organ.final", "tissue.energy", "tissue.position", "tissue.blood_account"]
 })json");
 }
 

@@ -174,6 +174,28 @@ TEST(CoagulateSkip, ASavedStateGoesOnAsIfNothingHadHappened) {
     EXPECT_TRUE(io::read_exr(file).front().image.format == PixelFormat::r32f);
 }
 
+/// Increments that a half float cannot hold must leave it alone, not wear it down.
+TEST(CoagulateSkip, AHalfFloatStateDoesNotCreep) {
+    EnergyStage stage(nlohmann::json::object(), {}, "plane", 64, "r16f");
+    stage.frame(0.0);
+    stage.contacts({{20, 20, 0, 3.0, 2.0, Action::dissect}});
+    stage.frame(0.25);
+    const Image cut = stage.energy();
+    ASSERT_EQ(cut.format, PixelFormat::r16f);
+    for (int i = 0; i < 40; ++i) {
+        stage.contacts({{20, 20, 9, 0.01, 3.0, Action::ultrasound}});  // at most 2e-6 a frame
+        EXPECT_EQ(stage.frame(0.25 + (i + 1) / 60.0).status, PassStatus::reduced);
+    }
+    const Image after = stage.energy();
+    for (int y = 0; y < 64; ++y) {
+        for (int x = 0; x < 64; ++x) {
+            if (cut.at(x, y, 0) < -0.1F) {
+                EXPECT_EQ(after.at(x, y, 0), cut.at(x, y, 0));
+            }
+        }
+    }
+}
+
 TEST(CoagulateSkip, AStateOfAnotherSizeIsRefused) {
     const auto file = std::filesystem::temp_directory_path() / "viscera_tissue_test" / "small.exr";
     const io::ExrPart part{.name = "tissue.energy", .image = make_image(16, 16, PixelFormat::r32f)};

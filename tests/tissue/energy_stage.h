@@ -15,7 +15,8 @@ namespace viscera::test {
 class EnergyStage {
   public:
     explicit EnergyStage(const nlohmann::json& coagulate = nlohmann::json::object(), const Plane& plane = {},
-                         const std::string& name = "plane", int size = 128)
+                         const std::string& name = "plane", int size = 128,
+                         const std::string& format = "r32f")
         : size_(size) {
         const nlohmann::json mesh{{"file", plane.write(name).string()}};
         nlohmann::json parameters{{"mesh", mesh}, {"size", size}};
@@ -31,6 +32,7 @@ class EnergyStage {
         scene["passes"].push_back(pass("bake", "tissue.bake", {{"mesh", mesh}, {"size", size}}));
         scene["passes"].push_back(pass("coagulate", "tissue.coagulate", parameters));
         scene["outputs"] = {"tissue.energy", "tissue.position"};
+        scene["targets"]["tissue.energy"]["format"] = format;
         stage.load(scene);
     }
 

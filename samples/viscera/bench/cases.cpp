@@ -5,7 +5,7 @@
 namespace viscera::app {
 
 std::span<const Case> all_cases() {
-    static constexpr std::array<Case, 25> cases{{
+    static constexpr std::array<Case, 26> cases{{
         {"ceilings", "copy and clear per format, fetches, exp, vertices, triangles", run_ceilings},
         {"readback", "read-back per format, waiting and not waiting", run_read_back},
         {"geometry", "one pass over the vessels against three", run_geometry},
@@ -32,6 +32,7 @@ std::span<const Case> all_cases() {
         {"tissue_blood", "a step of blood against copies of a picture of its size", run_blood},
         {"tissue_bake", "a surface whose vertices move, as textures, against copies of the same bytes",
          run_tissue_bake},
+        {"tissue_energy", "coagulation by the part of the texture that contacts reach", run_tissue_energy},
     }};
     return cases;
 }

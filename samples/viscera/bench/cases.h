@@ -42,5 +42,6 @@ void run_organ(Lab& lab);
 void run_curvilinear(Lab& lab);
 void run_blood(Lab& lab);
 void run_tissue_bake(Lab& lab);
+void run_tissue_energy(Lab& lab);
 
 }  // namespace viscera::app
