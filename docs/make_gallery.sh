@@ -40,3 +40,5 @@ picture axial slice.axial 'Axial slice, brain window: the bleed' assets/scenes/s
 picture coronal slice.coronal 'Coronal slice' assets/scenes/slices.json
 picture sagittal slice.sagittal 'Sagittal slice' assets/scenes/slices.json
 picture overlay volume.colour 'Blood flow as hue over the brain' assets/scenes/labels.json --set '/passes/0/parameters/overlay={"file":"../volumes/overlay.nrrd","strength":0.8,"points":[{"value":8,"colour":[0,0.1,1],"opacity":0},{"value":20,"colour":[0,0.4,1],"opacity":1},{"value":50,"colour":[0,1,0.3],"opacity":1},{"value":80,"colour":[1,0.2,0],"opacity":1}]}'
+picture organ final 'Liver, gallbladder and omentum through a laparoscope' assets/scenes/organ.json
+picture organ_tissue final 'Bruise, coagulated spots, blood, and a membrane in front' assets/scenes/organ_tissue.json --time 3
