@@ -89,8 +89,11 @@ void main() {
         vec3 du = ((q1.xyz - q0.xyz) * d2.y - (q2.xyz - q0.xyz) * d1.y) / det;
         vec3 dv = ((q2.xyz - q0.xyz) * d1.x - (q1.xyz - q0.xyz) * d2.x) / det;
         vec2 lengths = vec2(length(du), length(dv));
-        float cosine = all(greaterThan(lengths, vec2(0.0))) ? dot(du / lengths.x, dv / lengths.y) : 0.0;
-        o_metric = vec4(lengths, clamp(cosine, -1.0, 1.0), length(cross(du, dv)));
+        // From unit vectors: a square of a square would leave the range of a float for organs far from a millimetre's size.
+        vec3 along_u = du / max(lengths.x, 1e-37);
+        vec3 along_v = dv / max(lengths.y, 1e-37);
+        o_metric = vec4(lengths, clamp(dot(along_u, along_v), -1.0, 1.0),
+                        length(cross(along_u, along_v)) * lengths.x * lengths.y);
     }
 #endif
 }

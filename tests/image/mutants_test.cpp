@@ -181,6 +181,11 @@ constexpr Mutant mutants[] = {
      "depth_of_field"},
     {"CubicWeight", "volume_narrow", "volume/cubic_weights.glsl", "(4.0 - 3.0 * a * a * (2.0 - a)) / 6.0",
      "(4.0 - 3.0 * a * a * (2.0 - a)) / 6.1", "cast"},
+    {"BakeWeight", "tissue_bake", "tissue/bake.frag", "weight.x * (b - a)", "0.99 * weight.x * (b - a)",
+     "bake"},
+    {"BakeMetric", "tissue_bake", "tissue/bake.frag", "d1.x * d2.y - d1.y * d2.x",
+     "d1.x * d2.y - 0.9 * d1.y * d2.x", "bake"},
+    {"BakeSeam", "tissue_bake", "tissue/bake.frag", "} else if (!ends) {", "} else if (ends) {", "bake"},
 };
 
 class Mutants : public testing::TestWithParam<Mutant> {};

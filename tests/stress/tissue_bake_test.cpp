@@ -45,8 +45,8 @@ TEST_F(TissueBakes, TexturesOfAnyOrientation) {
     const Pictures mirrored = bake(square + "vt .8 .2\nvt .2 .2\nvt .2 .8\nvt .8 .8\n" + faces);
     EXPECT_NEAR(share(plain, 1.0F), 0.36, 0.05);
     EXPECT_EQ(share(plain, 1.0F), share(mirrored, 1.0F));
-    EXPECT_NEAR(plain.at("tissue.position").at(16, 16, 0) + mirrored.at("tissue.position").at(15, 16, 0),
-                10.0, 1e-4);
+    EXPECT_NEAR(plain.at("tissue.position").at(16, 16, 0), mirrored.at("tissue.position").at(15, 16, 0),
+                1e-5);
     EXPECT_EQ(renderer().log().faults().size(), 0U) << said();
 }
 
@@ -74,7 +74,8 @@ TEST_F(TissueBakes, TextureCoordinatesFarOutside) {
     EXPECT_EQ(share(bake(square + "vt 0 0\nvt 2 0\nvt 2 2\nvt 0 2\n" + faces, {{"atlas", "file"}}), 1.0F),
               1.0);
     // By itself it gets an atlas.
-    EXPECT_LT(share(bake(square + "vt 0 0\nvt 2 0\nvt 2 2\nvt 0 2\n" + faces), 1.0F), 0.9);
+    (void)bake(square + "vt 0 0\nvt 2 0\nvt 2 2\nvt 0 2\n" + faces);
+    EXPECT_NE(said().find("an atlas of 1 charts was made"), std::string::npos) << said();
 }
 
 TEST_F(TissueBakes, MissingTextureCoordinatesAndNormals) {
