@@ -36,6 +36,8 @@ picture mip volume.colour 'MR angiogram, maximum intensity' assets/scenes/mip.js
 picture isosurface volume.colour 'Skin and skull as surfaces, cut open' assets/scenes/isosurface.json
 picture labels volume.colour 'Segments, with a bleed' assets/scenes/labels.json
 picture xray volume.colour 'X-ray, exact line integrals' assets/scenes/xray.json
+picture rotational_ultrasound volume.colour 'Intravascular ultrasound of a coronary artery: a cylindrical volume, cut open' assets/scenes/rotational_ultrasound.json
+picture spherical_shell volume.colour 'Unborn child before a volume probe: a spherical volume' assets/scenes/spherical_shell.json
 picture axial slice.axial 'Axial slice, brain window: the bleed' assets/scenes/slices.json
 picture coronal slice.coronal 'Coronal slice' assets/scenes/slices.json
 picture sagittal slice.sagittal 'Sagittal slice' assets/scenes/slices.json

@@ -27,7 +27,7 @@ float skin_distance(const glm::vec3& p) {
     d = join(d, rod(q, {0.0F, 36.8F, -24.0F}, {6.0F, 34.0F, -23.0F}, 2.6F, 1.6F), 2.0F);
     d = carve(d, rod(q, {0.0F, 40.0F, -21.3F}, {6.5F, 36.5F, -21.4F}, 1.0F, 0.6F), 1.2F);  // mouth
     d = join(d, sphere(q, {0.0F, 30.0F, -32.5F}, 6.5F), 6.0F);                             // chin
-    d = join(d, ellipsoid(q, {34.0F, -6.0F, -6.0F}, {3.0F, 7.0F, 10.0F}), 3.0F);           // ears
+    d = join(d, ellipsoid(q, {30.5F, -6.0F, -5.0F}, {4.0F, 7.0F, 10.0F}), 4.0F);           // ears
     return join(d, rod(q, {0.0F, -10.0F, -34.0F}, {0.0F, -16.0F, -90.0F}, 17.0F, 34.0F), 12.0F);
 }
 

@@ -119,9 +119,9 @@ TEST_F(FilterAccuracyTest, ErrorsOnMarschnerLobbAreTheKnownOnes) {
     }
 }
 
-// What most GPUs make of it: their texture units weigh in 8 bits. Only where a filter is better than that
-// does it show, and there the fp32 filters keep what the voxels hold.
-TEST_F(FilterAccuracyTest, WeightsOfEightBitsLimitOnlyThePrefilteredSplineAndNoFullPrecisionFilter) {
+// What most GPUs make of it: their texture units weigh in 8 bits. That limits the prefiltered spline, shows a
+// little in Catmull-Rom, and nowhere in filters that weigh voxels themselves.
+TEST_F(FilterAccuracyTest, WeightsOfEightBitsLimitThePrefilteredSplineAndNoFullPrecisionFilter) {
     VolumeSampler coarse(VolumeSampler::Weights::eight_bits);
     const MarschnerLobb& known = known_errors.back();
     const volume::Source source = marschner_lobb_volume(known.samples);
@@ -129,9 +129,17 @@ TEST_F(FilterAccuracyTest, WeightsOfEightBitsLimitOnlyThePrefilteredSplineAndNoF
         if (kind.reference == reference::Filter::nearest) {
             continue;
         }
-        const bool limited = kind.reference == reference::Filter::bspline_prefiltered && !kind.full_precision;
-        const double due = limited ? 4.0e-5 : known.of(kind.reference);
-        EXPECT_NEAR(marschner_lobb_error(coarse, source, kind), due, 0.02 * due) << kind.name;
+        const double error = marschner_lobb_error(coarse, source, kind);
+        const double due = known.of(kind.reference);
+        if (kind.full_precision || kind.reference == reference::Filter::trilinear ||
+            kind.reference == reference::Filter::bspline) {
+            EXPECT_NEAR(error, due, 0.02 * due) << kind.name;
+        } else if (kind.reference == reference::Filter::bspline_prefiltered) {
+            EXPECT_NEAR(error, 4.0e-5, 0.02 * 4.0e-5);
+        } else {
+            EXPECT_GT(error, 1.02 * due) << kind.name;
+            EXPECT_LT(error, 1.06 * due) << kind.name;
+        }
     }
 }
 

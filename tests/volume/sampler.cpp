@@ -1,6 +1,7 @@
 #include "tests/volume/sampler.h"
 
 #include <cstring>
+#include <stdexcept>
 
 #include "effects/volume/prefilter.h"
 #include "engine/core/hash.h"
@@ -26,9 +27,12 @@ void main() {
 }
 )";
 
-/// A fetch of the texture unit, and what it is with weights of 8 bits.
-constexpr std::string_view own_fetch = "float linear_texel(vec3 place) {\n    return textureLod";
-constexpr std::string_view eight_bit_fetch = R"(float linear_texel(vec3 place) {
+/// A fetch of the texture unit, and one with weights of 8 bits in its place.
+constexpr std::string_view own_sampler = "uniform sampler3D u_volume;";
+constexpr std::string_view own_fetch = "textureLod(u_volume, place, 0.0).r";
+constexpr std::string_view eight_bit_fetch = "eight_bit_texel(place)";
+constexpr std::string_view eight_bit_texel = R"(
+float eight_bit_texel(vec3 place) {
     ivec3 last = textureSize(u_volume, 0) - 1;
     vec3 p = place * vec3(last + 1) - 0.5;
     ivec3 low = ivec3(floor(p));
@@ -41,9 +45,20 @@ constexpr std::string_view eight_bit_fetch = R"(float linear_texel(vec3 place) {
     }
     return sum;
 }
+)";
 
-float unused_texel(vec3 place) {
-    return textureLod)";
+std::string with_eight_bits(std::string text) {
+    const auto change = [&](std::string_view from, const std::string& to) {
+        const std::size_t at = text.find(from);
+        if (at == std::string::npos) {
+            throw std::logic_error("volume/storage.glsl has no '" + std::string(from) + "'");
+        }
+        text.replace(at, from.size(), to);
+    };
+    change(own_fetch, std::string(eight_bit_fetch));
+    change(own_sampler, std::string(own_sampler) + std::string(eight_bit_texel));
+    return text;
+}
 
 ShaderReader with_sampler(VolumeSampler::Weights weights) {
     return [engine = embedded_shader_reader(), weights](std::string_view name) {
@@ -51,10 +66,8 @@ ShaderReader with_sampler(VolumeSampler::Weights weights) {
             return std::optional(std::string(fragment));
         }
         std::optional<std::string> text = engine(name);
-        if (weights == VolumeSampler::Weights::eight_bits && name == "volume/storage.glsl") {
-            text->replace(text->find(own_fetch), own_fetch.size(), eight_bit_fetch);
-        }
-        return text;
+        const bool coarse = weights == VolumeSampler::Weights::eight_bits && name == "volume/storage.glsl";
+        return coarse ? std::optional(with_eight_bits(*text)) : text;
     };
 }
 

@@ -213,7 +213,7 @@ void run_shot(Lab& lab, Assets& assets, const volume::Source& signal, const Shot
              .samples = samples,
              .rms = drawing.error(shot.voxels, shot.gradient),
              .error_of = shot.gradient ? "its derivatives, relative" : "Marschner-Lobb",
-             .value = 1e6 * times(samples).median / drawn,
+             .value = 1e6 * (lab.hardware() ? times(samples) : works(samples)).median / drawn,
              .unit = shot.gradient ? "ns per gradient" : "ns per sample",
              .ceiling = linear.empty() ? "" : "linear",
              .base = linear});
