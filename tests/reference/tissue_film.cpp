@@ -225,11 +225,12 @@ void Film::step(const TissueSurface& s, const Flow& flow, const FilmParams& p, d
             }
         }
     }
+    std::vector<double> came(height_mm.size(), 0.0);
     for (const FlowLink& link : flow.links) {
         const double drive = link.drive - link.spread * (at(link.to) - at(link.from));
         const double volume = exchange(drive, link.spread, link.area_mm2, at(link.from), at(link.to), p, dt);
-        change[link.from] -= volume;
-        change[link.to] += volume;
+        came[link.from] -= volume;
+        came[link.to] += volume;
     }
     // Gutters show what lay across the seam before the step.
     std::vector<double> across(height_mm.size(), 0.0);
@@ -245,10 +246,11 @@ void Film::step(const TissueSurface& s, const Flow& flow, const FilmParams& p, d
             height_mm[i] = across[i];
         }
         if (flow.area_mm2[i] > 0.0) {
-            double h = height_mm[i] + change[i] / flow.area_mm2[i];
+            double h = height_mm[i] + change[i] / flow.area_mm2[i] + owed_mm[i];
             const double dried = std::min(std::max(h, 0.0), p.drying_mm_s * dt);
             gone_mm[i] += gone[i] / flow.area_mm2[i] + dried;
             height_mm[i] = h - dried;
+            owed_mm[i] = came[i] / flow.area_mm2[i];
         }
     }
 }
@@ -256,7 +258,7 @@ void Film::step(const TissueSurface& s, const Flow& flow, const FilmParams& p, d
 double Film::volume_mm3(const Flow& flow) const {
     double sum = 0.0;
     for (std::size_t i = 0; i < height_mm.size(); ++i) {
-        sum += height_mm[i] * flow.area_mm2[i];
+        sum += (height_mm[i] + owed_mm[i]) * flow.area_mm2[i];
     }
     return sum;
 }

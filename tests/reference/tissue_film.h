@@ -66,9 +66,10 @@ struct FilmParams {
 /// A film of liquid on a surface, in finite volumes.
 struct Film {
     std::vector<double> height_mm;
+    std::vector<double> owed_mm;  ///< came across seams in the last step, joins the height in the next
     std::vector<double> gone_mm;  ///< run off or dried, per cell
 
-    explicit Film(std::size_t cells) : height_mm(cells, 0.0), gone_mm(cells, 0.0) {}
+    explicit Film(std::size_t cells) : height_mm(cells, 0.0), owed_mm(cells, 0.0), gone_mm(cells, 0.0) {}
     void step(const TissueSurface& surface, const Flow& flow, const FilmParams& params, double dt_s);
     [[nodiscard]] double volume_mm3(const Flow& flow) const;
     [[nodiscard]] double gone_mm3(const Flow& flow) const;

@@ -241,7 +241,8 @@ TEST(BloodVolume, OldDropsMakeRoomForNewOnes) {
     // Thick blood on a wall: no drop ends of itself in this time.
     stage.gravity = {{"gravity_m_s2", {1.0, 0.0, 0.0}}};
     stage.blood = {
-        {"liquid", {{"max_drops", 256}, {"drop_mm3", 0.0078125}, {"viscosity_mpa_s", 40.0}, {"trail_mm", 0.0}}},
+        {"liquid",
+         {{"max_drops", 256}, {"drop_mm3", 0.0078125}, {"viscosity_mpa_s", 40.0}, {"trail_mm", 0.0}}},
         {"wounds", {{{"position_mm", {20, 30, 0}}, {"rate_mm3_s", 4.0}, {"radius_mm", 8.0}}}}};
     stage.load();
     stage.run(0.0, 2.0, 0.1);

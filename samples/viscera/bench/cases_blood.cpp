@@ -57,8 +57,8 @@ void run_blood(Lab& lab) {
                  .base = stage.pass("copy"),
                  .goal = step_goal});
     };
-    measure("a step, 1 wound after 1 s", wounds_along(1, 30.0), 16384, 120);
-    measure("a step, 4 wounds after 2 s", wounds_along(4, 30.0), 16384, 240);
+    measure("a step, 1 wound after 0.5 s", wounds_along(1, 30.0), 16384, 60);
+    measure("a step, 4 wounds after 1 s", wounds_along(4, 30.0), 16384, 120);
     if (lab.hardware()) {
         // Each wound gives 9 drops a step at most; more blood makes them larger.
         measure("a step, 100000 drops", wounds_along(64, 270.0), 102400, 360);
