@@ -44,3 +44,5 @@ picture sagittal slice.sagittal 'Sagittal slice' assets/scenes/slices.json
 picture overlay volume.colour 'Blood flow as hue over the brain' assets/scenes/labels.json --set '/passes/0/parameters/overlay={"file":"../volumes/overlay.nrrd","strength":0.8,"points":[{"value":8,"colour":[0,0.1,1],"opacity":0},{"value":20,"colour":[0,0.4,1],"opacity":1},{"value":50,"colour":[0,1,0.3],"opacity":1},{"value":80,"colour":[1,0.2,0],"opacity":1}]}'
 picture organ final 'Liver, gallbladder and omentum through a laparoscope' assets/scenes/organ.json
 picture organ_tissue final 'Bruise, coagulated spots, blood, and a membrane in front' assets/scenes/organ_tissue.json --time 3
+picture mixed volume.colour 'An opened head: a quarter of the rays, under a mesh in full resolution' assets/scenes/mixed.json
+picture stereo volume.colour 'The same for two eyes, side by side' assets/scenes/stereo.json

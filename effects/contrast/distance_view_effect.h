@@ -10,6 +10,7 @@ class DistanceViewEffect final : public Effect {
     DistanceViewEffect();
     void visit(ParamVisitor&) override {}
     [[nodiscard]] std::vector<Port> ports() const override;
+    [[nodiscard]] bool uses_view() const override { return false; }
     [[nodiscard]] std::span<const ProgramDesc> programs() const override { return programs_; }
     [[nodiscard]] Work prepare(Prepare& prepare) override;
     void draw(const Pass& pass) override;

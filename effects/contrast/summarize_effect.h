@@ -12,6 +12,7 @@ class SummarizeEffect final : public Effect {
     SummarizeEffect();
     void visit(ParamVisitor& visitor) override;
     [[nodiscard]] std::vector<Port> ports() const override;
+    [[nodiscard]] bool uses_view() const override { return false; }
     [[nodiscard]] std::span<const ProgramDesc> programs() const override { return programs_; }
     [[nodiscard]] Work prepare(Prepare& prepare) override;
     void draw(const Pass& pass) override;

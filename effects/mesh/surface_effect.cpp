@@ -131,7 +131,10 @@ void SurfaceEffect::draw(const Pass& pass) {
     program.set("u_specular", static_cast<float>(params_.specular));
     program.set("u_shininess", static_cast<float>(params_.shininess));
     program.set("u_headlight", static_cast<float>(params_.headlight));
-    program.set("u_towards_eye", view.orthographic ? glm::vec3(0.0F, 0.0F, 1.0F) : glm::vec3(0.0F));
+    const glm::dmat4& p = view.projection;
+    // An orthographic view's rays slant for an eye of two.
+    program.set("u_towards_eye", view.orthographic ? glm::vec3(-p[2][0] / p[0][0], -p[2][1] / p[1][1], 1.0F)
+                                                   : glm::vec3(0.0F));
     for (std::size_t i = 0; i < light_directions_.size(); ++i) {
         light_directions_[i] = glm::dmat3(view.view) * glm::normalize(params_.lights[i].direction);
     }

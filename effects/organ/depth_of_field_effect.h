@@ -25,6 +25,7 @@ class DepthOfFieldEffect final : public Effect {
   public:
     void visit(ParamVisitor& visitor) override { params_.visit(visitor); }
     [[nodiscard]] std::vector<Port> ports() const override;
+    [[nodiscard]] bool uses_view() const override { return false; }
     [[nodiscard]] std::span<const ProgramDesc> programs() const override;
     [[nodiscard]] Work prepare(Prepare& prepare) override;
     void draw(const Pass& pass) override;

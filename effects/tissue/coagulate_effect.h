@@ -47,6 +47,7 @@ class CoagulateEffect final : public Effect {
     void visit(ParamVisitor& visitor) override { params_.visit(visitor); }
     void validate() const override;
     [[nodiscard]] std::vector<Port> ports() const override;
+    [[nodiscard]] bool uses_view() const override { return false; }
     [[nodiscard]] std::span<const ProgramDesc> programs() const override { return programs_; }
     [[nodiscard]] Work prepare(Prepare& prepare) override;
     void draw(const Pass& pass) override;

@@ -200,18 +200,25 @@ void Look::bind_labels(const LookParams& params, const LookScene& scene, const P
                        const gl::Program& program) {
     const Volume& labels = labels_->volume();
     const glm::ivec3 n = labels.grid.dims;
-    const std::uint64_t voxels_key = Hash().add(key_of(labels_)).add(parameters_key_).value();
-    if (label_voxels_.key != voxels_key) {
+    Hash ids;
+    for (const Segment& segment : params.labels.segments) {
+        ids.add(segment.id);
+    }
+    label_voxels_ =
+        pass.assets().shared<Made>(Hash().add("label voxels").add(labels_->key).add(ids.value()).value(),
+                                   [] { return std::make_shared<Made>(); });
+    const std::uint64_t voxels_key = key_of(labels_);
+    if (label_voxels_->key != voxels_key) {
         std::size_t broken = 0;
         const std::vector<std::uint16_t> dense = dense_labels(labels, params.labels, broken);
         if (broken > 0) {
             pass.log().fault("volume.labels", "labels are not whole numbers; they count as not listed",
                              broken);
         }
-        label_voxels_.texture.emplace(
+        label_voxels_->texture.emplace(
             gl::Texture::make_3d(pass.gl(), {n.x, n.y, n.z}, gl::r16ui_format, labels.source));
-        label_voxels_.texture->upload(std::as_bytes(std::span(dense)));
-        label_voxels_.key = voxels_key;
+        label_voxels_->texture->upload(std::as_bytes(std::span(dense)));
+        label_voxels_->key = voxels_key;
     }
     if (label_looks_.key != parameters_key_) {
         const std::vector<glm::vec4> looks = look_table(params.labels);
@@ -243,7 +250,7 @@ void Look::bind_labels(const LookParams& params, const LookScene& scene, const P
     program.set("u_labels_curved", place.curved);
     program.set("u_labels_scale", glm::vec3(place.map.scale * glm::dvec3(n)));
     program.set("u_labels_offset", glm::vec3(place.map.offset * glm::dvec3(n)));
-    pass.bind(program, "u_labels", *label_voxels_.texture, gl::Filter::nearest);
+    pass.bind(program, "u_labels", *label_voxels_->texture, gl::Filter::nearest);
     pass.bind(program, "u_label_looks", *label_looks_.texture, gl::Filter::nearest);
     if (params.labels.has_ramps()) {
         pass.bind(program, "u_label_ramps", *label_ramps_.texture, gl::Filter::nearest);
@@ -307,18 +314,21 @@ void Look::bind_light(const LookParams& params, const LookScene& scene, const Pa
     const glm::dvec4 light = params.shading.lights.empty()
                                  ? glm::dvec4(0.0, 0.0, 1.0, 0.0)
                                  : params.shading.lights.front().place(pass.frame().eye());
-    const std::uint64_t key = Hash()
-                                  .add(key_of(scene.function))
-                                  .add(scene.source.key)
-                                  .add(scene.source.version())
-                                  .add(scene.space.local_to_world)
-                                  .add(how.shadow)
-                                  .add(how.ambient_occlusion)
-                                  .add(how.resolution)
-                                  .add(how.radius_mm)
-                                  .add(how.shadow > 0.0 ? light : glm::dvec4(0.0))
-                                  .value();
-    if (light_.key != key) {
+    const std::uint64_t alike = Hash()
+                                    .add("light volume")
+                                    .add(scene.channel)
+                                    .add(key_of(scene.function))
+                                    .add(scene.source.key)
+                                    .add(scene.space.local_to_world)
+                                    .add(how.shadow)
+                                    .add(how.ambient_occlusion)
+                                    .add(how.resolution)
+                                    .add(how.radius_mm)
+                                    .add(how.shadow > 0.0 ? light : glm::dvec4(0.0))
+                                    .value();
+    light_ = pass.assets().shared<Made>(alike, [] { return std::make_shared<Made>(); });
+    const std::uint64_t key = scene.source.version() + 1;  // 0: not made yet
+    if (light_->key != key) {
         const auto of_value = [&](double value) {
             return extinction(evaluate(scene.function, value).w, scene.function.reference_length_mm);
         };
@@ -327,16 +337,16 @@ void Look::bind_light(const LookParams& params, const LookScene& scene, const Pa
                                        how.resolution, of_value)
                    : extinction_grid(scene.source.volume(), scene.channel, scene.space.local_to_world,
                                      how.resolution, of_value);
-        light_.texture.emplace(gl::Texture::make_3d(pass.gl(), {grid.dims.x, grid.dims.y, grid.dims.z},
-                                                    gl::texture_format(PixelFormat::rg32f), "light volume"));
+        light_->texture.emplace(gl::Texture::make_3d(pass.gl(), {grid.dims.x, grid.dims.y, grid.dims.z},
+                                                     gl::texture_format(PixelFormat::rg32f), "light volume"));
         const std::vector<glm::vec2> texels = light_volume(grid, how, light);
-        light_.texture->upload(std::as_bytes(std::span(texels)));
-        light_.key = key;
+        light_->texture->upload(std::as_bytes(std::span(texels)));
+        light_->key = key;
     }
     program.set(
         "u_light_volume_from_local",
         curved ? glm::mat4(glm::inverse(box_to_world(scene)) * scene.space.local_to_world) : glm::mat4(1.0F));
-    pass.bind(program, "u_light_volume", *light_.texture, gl::Filter::linear);
+    pass.bind(program, "u_light_volume", *light_->texture, gl::Filter::linear);
 }
 
 void Look::bind(const LookParams& params, const Variant& variant, const LookScene& scene, const Pass& pass,

@@ -92,13 +92,13 @@ class Look {
     SourceParams overlay_source_;
     std::shared_ptr<const Source> labels_;
     std::shared_ptr<const Source> overlay_;
-    Made label_voxels_;
+    std::shared_ptr<Made> label_voxels_;  ///< shared by all passes with the same labels and ids
     Made label_looks_;
     Made label_ramps_;
     Made overlay_map_;
     glm::dvec2 overlay_place_{0.0};
     Made gradient_factor_;
-    Made light_;
+    std::shared_ptr<Made> light_;  ///< shared by all passes that light the volume alike
 };
 
 }  // namespace viscera::volume

@@ -57,6 +57,9 @@ void RayCastEffect::validate() const {
                     "at most " + std::to_string(most_iso_values) + " surfaces");
     }
     params_.look.validate();
+    if (params_.sampling.fovea) {
+        params_.sampling.fovea->validate();
+    }
     if (params_.volume.geometry && params_.volume.geometry->kind != VolumeKind::cartesian) {
         check_kind();
     }
@@ -86,6 +89,17 @@ std::vector<Port> RayCastEffect::ports() const {
                              .target = "mesh.colour",
                              .doc = "Picture behind, premultiplied by its opacity: the volume goes over it.",
                              .optional = true}};
+    if (is_coarse()) {
+        ports.pop_back();  // what is behind comes in full resolution
+        ports.front().target = "volume.coarse";
+        ports.front().size.scale = 0.5;
+        ports.front().passthrough.clear();
+    } else if (params_.mixed) {
+        ports.push_back({.name = "coarse",
+                         .target = "volume.coarse",
+                         .doc = "Picture of a coarse pass that has the same parameters.",
+                         .optional = true});
+    }
     if (params_.sampling.limits != Limits::analytic) {
         ports.push_back({.name = "entry", .target = "volume.entry", .doc = "Where rays enter."});
         ports.push_back({.name = "exit", .target = "volume.exit", .doc = "Where rays leave."});
@@ -214,9 +228,12 @@ Work RayCastEffect::prepare(Prepare& prepare) {
     const Bounds bounds = seen_bounds({glm::vec3(box.min), glm::vec3(box.max)});
     const glm::ivec2 size = prepare.size("colour");
     variant_.surface = prepare.has("depth");
+    depth_size_ = prepare.size("depth");
     variant_.background = prepare.has("background");
     variant_.inner =
         params_.sampling.limits == Limits::mesh && prepare.has("inner_entry") && prepare.has("inner_exit");
+    variant_.fills = params_.mixed && prepare.has("coarse") &&
+                     can_fill(prepare.size("coarse"), lattice_of(prepare.frame(), depth_size_));
     if (params_.sampling.limits != Limits::analytic && !prepare.has("exit")) {
         return Work::idle("what limits the rays is not in the view");
     }
@@ -224,11 +241,14 @@ Work RayCastEffect::prepare(Prepare& prepare) {
     if (region.empty()) {
         return Work::idle("the volume lies outside the view");
     }
+    fovea_centre_ =
+        params_.sampling.fovea ? params_.sampling.fovea->centre_of(prepare.frame()) : glm::dvec2(0.0);
     const std::uint64_t key = Hash()
                                   .add(parameters_key_)
                                   .add(source_->key)
                                   .add(source_->version())
                                   .add(lattice_.slab_mm)
+                                  .add(fovea_centre_)
                                   .add(look_.key())
                                   .add(view.view)
                                   .add(view.projection)
@@ -238,16 +258,29 @@ Work RayCastEffect::prepare(Prepare& prepare) {
                : Work::in_region(region, "only where the volume can be seen", key);
 }
 
+/// The full picture's size in pixels, of which a coarse one holds some: that of the surfaces' depth, so that
+/// rays end where it is known. Both passes find the same.
+glm::ivec2 RayCastEffect::lattice_of(const Frame& frame, glm::ivec2 depth) {
+    if (depth.x > 0) {
+        return depth;
+    }
+    const double share = frame.quality.resolution;
+    return glm::max(glm::ivec2(glm::round(share * glm::dvec2(frame.width, frame.height))), 1);
+}
+
 void RayCastEffect::bind_blue_noise(const Pass& pass, const gl::Program& program) {
     if (!blue_noise_) {
-        const std::vector<std::uint16_t> ranks = blue_noise(blue_noise_size, 1);
-        std::vector<float> values(ranks.size());
-        std::ranges::transform(ranks, values.begin(), [&](std::uint16_t rank) {
-            return (static_cast<float>(rank) + 0.5F) / static_cast<float>(ranks.size());
+        blue_noise_ = pass.assets().shared<gl::Texture>(Hash().add("blue noise").value(), [&] {
+            const std::vector<std::uint16_t> ranks = blue_noise(blue_noise_size, 1);
+            std::vector<float> values(ranks.size());
+            std::ranges::transform(ranks, values.begin(), [&](std::uint16_t rank) {
+                return (static_cast<float>(rank) + 0.5F) / static_cast<float>(ranks.size());
+            });
+            auto texture = std::make_shared<gl::Texture>(gl::Texture::make_2d(
+                pass.gl(), blue_noise_size, blue_noise_size, PixelFormat::r32f, "blue noise"));
+            texture->upload(std::as_bytes(std::span(values)));
+            return texture;
         });
-        blue_noise_.emplace(gl::Texture::make_2d(pass.gl(), blue_noise_size, blue_noise_size,
-                                                 PixelFormat::r32f, "blue noise"));
-        blue_noise_->upload(std::as_bytes(std::span(values)));
     }
     pass.bind(program, "u_blue_noise", *blue_noise_, gl::Filter::nearest, gl::Wrap::repeat);
     const int seed = params_.sampling.seed;
@@ -278,7 +311,18 @@ void RayCastEffect::draw(const Pass& pass) {
     const auto variant = std::ranges::find(variants_, variant_);
     const gl::Program& program = pass.use(static_cast<std::size_t>(variant - variants_.begin()));
     const RayFrame frame = make_ray_frame(pass.frame().eye(), space_.local_to_world, space_.low, space_.high);
-    program.set("u_pixel", 2.0F / glm::vec2(pass.size()));
+    const glm::ivec2 lattice = lattice_of(pass.frame(), depth_size_);
+    program.set("u_pixel", 2.0F / glm::vec2(is_coarse() ? lattice : pass.size()));
+    program.set("u_lattice", lattice);
+    program.set("u_size", pass.size());
+    if (params_.sampling.fovea) {
+        params_.sampling.fovea->set(program, fovea_centre_, is_coarse() ? lattice : pass.size());
+    }
+    if (variant_.fills) {
+        program.set("u_coarse_tolerance", static_cast<float>(params_.mixed->tolerance));
+        program.set("u_coarse_depth_tolerance", static_cast<float>(params_.mixed->depth_tolerance_mm));
+        pass.bind(program, "u_coarse", "coarse");
+    }
     program.set("u_point", std::span<const glm::vec3>(frame.point));
     program.set("u_direction", std::span<const glm::vec3>(frame.direction));
     program.set("u_world_direction", std::span<const glm::vec3>(frame.world_direction));

@@ -36,6 +36,7 @@ class RayCastEffect final : public Effect {
         bool surface = false;     ///< rays end at opaque surfaces
         bool background = false;  ///< the picture goes over another
         bool inner = false;       ///< the mesh that limits rays may be passed twice
+        bool fills = false;       ///< pixels come from a coarse picture where it is smooth
         bool atlas = false;       ///< the volume is stored as slices
         bool compute = false;
         bool operator==(const Variant&) const = default;
@@ -51,6 +52,8 @@ class RayCastEffect final : public Effect {
     [[nodiscard]] std::vector<VolumeKind> kinds() const;
     void check_kind() const;
 
+    [[nodiscard]] bool is_coarse() const { return params_.mixed && params_.mixed->pass == MixedPass::coarse; }
+    [[nodiscard]] static glm::ivec2 lattice_of(const Frame& frame, glm::ivec2 depth);
     void find_crop();
     void bind_blue_noise(const Pass& pass, const gl::Program& program);
 
@@ -74,8 +77,10 @@ class RayCastEffect final : public Effect {
     glm::dvec3 box_max_{1.0};
     VoxelBox crop_;
     Lattice lattice_;
+    glm::dvec2 fovea_centre_{0.0};  ///< UV
+    glm::ivec2 depth_size_{0};      ///< [pixels]; 0: there is no depth
     Look look_;
-    std::optional<gl::Texture> blue_noise_;
+    std::shared_ptr<const gl::Texture> blue_noise_;
     std::optional<SlabTexture> slabs_;  ///< preintegrated only
     std::optional<gl::Texture> table_;
     std::uint64_t table_key_ = 0;

@@ -48,6 +48,10 @@ void RayCastParams::visit(ParamVisitor& v) {
             function);
     v.field({.name = "transfer_function", .doc = "Colour and opacity over value."}, transfer_function);
     v.field({.name = "sampling", .doc = "Where rays are sampled: time against error."}, sampling);
+    v.field({.name = "mixed",
+             .doc = "One of the two passes of a picture in mixed resolution; without it every pixel's ray is "
+                    "cast."},
+            mixed);
     v.field({.name = "crop", .doc = "Part of the volume that is shown."}, crop);
     v.field({.name = "sub_volume",
              .doc = "Only a given depth behind where rays start: a drawn surface (sampling.limits), a clip "

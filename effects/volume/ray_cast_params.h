@@ -7,6 +7,7 @@
 #include "effects/volume/classic.h"
 #include "effects/volume/isosurface.h"
 #include "effects/volume/look.h"
+#include "effects/volume/mixed.h"
 #include "effects/volume/sampling.h"
 #include "effects/volume/source.h"
 #include "effects/volume/transfer_params.h"
@@ -47,6 +48,7 @@ struct RayCastParams {
     std::optional<RayFunction> function;
     TransferParams transfer_function;
     SamplingParams sampling;
+    std::optional<MixedParams> mixed;
     CropParams crop;
     std::optional<SubVolumeParams> sub_volume;
     XrayParams xray;

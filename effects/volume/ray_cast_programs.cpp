@@ -61,6 +61,9 @@ std::span<const ProgramDesc> RayCastEffect::programs() const {
             if (params_.sub_volume) {
                 program.defines.emplace_back("SUB_VOLUME");
             }
+            if (params_.mixed && params_.mixed->pass == MixedPass::coarse) {
+                program.defines.emplace_back("MIXED_COARSE");
+            }
             const std::vector<std::string> clip = clip_defines(params_.look.clip_planes);
             program.defines.insert(program.defines.end(), clip.begin(), clip.end());
             if (function != RayFunction::composite) {
@@ -110,6 +113,9 @@ std::span<const ProgramDesc> RayCastEffect::programs() const {
     }
     again(&Variant::surface, "SURFACE");
     again(&Variant::background, "BACKGROUND");
+    if (params_.mixed && params_.mixed->pass == MixedPass::fine) {
+        again(&Variant::fills, "MIXED_FINE");
+    }
     if (params_.volume.storage != Storage::texture_3d) {
         again(&Variant::atlas, "STORAGE_ATLAS");
     }

@@ -47,7 +47,8 @@ RayFrame make_ray_frame(const View& view, const glm::dmat4& local_to_world, cons
         frame.point[i] = from_eye * glm::dvec4(eye[i], i == 0 ? 1.0 : 0.0);
         glm::dvec3 direction = eye[i];
         if (view.orthographic) {
-            direction = i == 0 ? glm::dvec3(0.0, 0.0, -1.0) : glm::dvec3(0.0);
+            // Slanting for an eye of two.
+            direction = i == 0 ? glm::dvec3(across * glm::dvec2(p[2]), -1.0) : glm::dvec3(0.0);
         }
         frame.direction[i] = from_eye * glm::dvec4(direction, 0.0);
         frame.world_direction[i] = world_from_eye * direction;

@@ -70,6 +70,10 @@ void SamplingParams::visit(ParamVisitor& v) {
     v.field(
         {.name = "jitter", .doc = "Moves each ray's samples by a part of a slab, the same in every frame."},
         jitter);
+    v.field({.name = "fovea",
+             .doc = "Longer steps away from where one looks; of no effect on cell and isosurface, which heed "
+                    "no step."},
+            fovea);
     v.field({.name = "seed", .doc = "Another jitter.", .min = 0, .max = 1e9}, seed);
     reconstruction.visit(v);
 }
@@ -91,6 +95,8 @@ Lattice make_lattice(const SamplingParams& params, const Space& space, Log& log,
     }
     // No ray is longer than the volume's sides together: whatever the step, a float holds the slab.
     lattice.slab_mm = std::min(lattice.slab_mm, diagonal);
+    const double longest_mm =
+        std::min(lattice.slab_mm * (params.fovea ? params.fovea->step_factor : 1.0), diagonal);
     // The local direction of a world direction is at most as long as the inverse's largest row says, and all
     // of it as the rows together.
     const glm::dmat3 to_local = glm::inverse(glm::dmat3(space.local_to_world));
@@ -99,10 +105,10 @@ Lattice make_lattice(const SamplingParams& params, const Space& space, Log& log,
         const glm::dvec3 row(to_local[0][a], to_local[1][a], to_local[2][a]);
         longest += glm::dot(row, row);
         const auto all = static_cast<double>(dims[a]);
-        const double voxels = std::min(all, lattice.slab_mm * glm::length(row) * all);
+        const double voxels = std::min(all, longest_mm * glm::length(row) * all);
         lattice.slab_voxels = std::max(a == 0 ? 0.0 : lattice.slab_voxels, voxels);
     }
-    lattice.slab_local = lattice.slab_mm * longest_local(to_local, std::sqrt(longest));
+    lattice.slab_local = longest_mm * longest_local(to_local, std::sqrt(longest));
     const int cells = dims.x + dims.y + dims.z + 8;
     lattice.slab_limit = params.scheme == Scheme::cell ? std::min(2 * cells, most_slabs) : most_slabs;
     return lattice;
@@ -139,6 +145,9 @@ void add_defines(const SamplingParams& params, std::vector<std::string>& defines
     }
     if (params.jitter != Jitter::none && params.scheme != Scheme::cell) {
         defines.push_back("JITTER " + std::to_string(static_cast<int>(params.jitter)));
+    }
+    if (params.fovea && params.scheme != Scheme::cell) {
+        defines.emplace_back("FOVEA");
     }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -7,6 +8,7 @@
 
 #include <glm/glm.hpp>
 
+#include "effects/volume/fovea.h"
 #include "effects/volume/limits.h"
 #include "effects/volume/reconstruction.h"
 #include "effects/volume/space.h"
@@ -35,6 +37,7 @@ struct SamplingParams {
     Limits limits = Limits::analytic;
     Jitter jitter = Jitter::none;
     int seed = 0;
+    std::optional<FoveaParams> fovea;
     ReconstructionParams reconstruction;
 
     void visit(ParamVisitor& v);
@@ -43,8 +46,8 @@ struct SamplingParams {
 /// Slabs of one volume under one placement.
 struct Lattice {
     double slab_mm = 1.0;      ///< length of a slab in the world
-    double slab_voxels = 0.5;  ///< the most voxels that a slab crosses along any axis, in any direction;
-                               ///< curvilinear: not known, since it grows towards the axis
+    double slab_voxels = 0.5;  ///< the most voxels that a slab crosses along any axis, in any direction,
+                               ///< away from the fovea, too; curvilinear: not known, since it grows towards the axis
     double slab_local = 0.5;   ///< the most that a slab can be long in local coordinates
     int slab_limit = 1;        ///< slabs of a ray, or cells it crosses, are fewer
 };

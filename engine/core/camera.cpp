@@ -11,6 +11,7 @@ namespace viscera {
 namespace {
 
 constexpr std::array<std::string_view, 3> kind_names{"perspective", "orthographic", "c_arm"};
+constexpr std::array<std::string_view, 2> layout_names{"separate", "side_by_side"};
 
 // Sine of the smallest angle between `up` and the view at which the picture still stands firmly.
 constexpr double min_sine = 1e-9;
@@ -112,6 +113,26 @@ std::span<const std::string_view> choice_names(CameraKind) {
     return kind_names;
 }
 
+std::span<const std::string_view> choice_names(StereoLayout) {
+    return layout_names;
+}
+
+void StereoParams::visit(ParamVisitor& v) {
+    v.field({.name = "interpupillary_mm", .doc = "Distance of the eyes.", .unit = "mm", .min = 0.0},
+            interpupillary_mm);
+    v.field({.name = "convergence_mm",
+             .doc = "Distance, along the view, of the plane that both eyes see in the same place (zero "
+                    "parallax); by default that of target_mm or of the isocentre.",
+             .unit = "mm",
+             .min = 0.0,
+             .min_excluded = true},
+            convergence_mm);
+    v.field({.name = "layout",
+             .doc = "separate: outputs NAME.left and NAME.right; side_by_side: one output NAME of twice the "
+                    "width."},
+            layout);
+}
+
 void CameraParams::visit(ParamVisitor& v) {
     v.field({.name = "kind", .doc = "How the camera projects, and which of the other keys it heeds."}, kind);
     v.field({.name = "eye_mm", .doc = "Eye (perspective, orthographic).", .unit = "mm"}, eye_mm);
@@ -180,6 +201,8 @@ void CameraParams::visit(ParamVisitor& v) {
              .doc = "Turns the camera about `up` through the target, or the C-arm's primary angle, in time.",
              .unit = "degree/s"},
             orbit_deg_per_s);
+    v.field({.name = "stereo", .doc = "Two eyes, left and right of the camera's, with parallel axes."},
+            stereo);
 }
 
 glm::dvec3 View::direction_to(const glm::dvec3& point_mm) const {

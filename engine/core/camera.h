@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include <glm/glm.hpp>
 
 #include "engine/core/params.h"
@@ -8,6 +10,20 @@ namespace viscera {
 
 enum class CameraKind { perspective, orthographic, c_arm };
 [[nodiscard]] std::span<const std::string_view> choice_names(CameraKind kind);
+
+/// How a scene's outputs are handed over when a frame has two eyes: one target per eye, `NAME.left` and
+/// `NAME.right`, or besides these one picture `NAME` of twice the width.
+enum class StereoLayout { separate, side_by_side };
+[[nodiscard]] std::span<const std::string_view> choice_names(StereoLayout layout);
+
+/// Two eyes in place of one: see engine/core/eyes.h.
+struct StereoParams {
+    double interpupillary_mm = 63.0;
+    std::optional<double> convergence_mm;  ///< none: the distance of the camera's target or isocentre
+    StereoLayout layout = StereoLayout::separate;
+
+    void visit(ParamVisitor& v);
+};
 
 /// Camera of a scene. World frame: LPS patient axes, millimetres (x to the patient's left, y to the back, z
 /// to the head).
@@ -35,15 +51,17 @@ struct CameraParams {
     double orbit_deg_per_s =
         0.0;  ///< turns the camera about `up` through the target (c_arm: primary angle) as time passes
 
+    std::optional<StereoParams> stereo;
+
     void visit(ParamVisitor& v);
 };
 
 /// Matrices of one eye, double precision. Clip space as OpenGL has it (z in [-w, w]).
 struct View {
-    glm::dmat4 view{1.0};        ///< world [mm] to eye
-    glm::dmat4 projection{1.0};  ///< eye to clip
-    glm::dvec3 eye_mm{0.0};      ///< for orthographic: a point on the eye plane
-    glm::dvec3 forward{0.0, 0.0, -1.0};
+    glm::dmat4 view{1.0};                ///< world [mm] to eye
+    glm::dmat4 projection{1.0};          ///< eye to clip
+    glm::dvec3 eye_mm{0.0};              ///< for orthographic: a point on the eye plane
+    glm::dvec3 forward{0.0, 0.0, -1.0};  ///< unit; orthographic: along the rays
     bool orthographic = false;
     bool mirrored = false;  ///< left and right change places, so front faces turn clockwise (c_arm)
 
@@ -52,8 +70,8 @@ struct View {
     [[nodiscard]] glm::dvec3 direction_to(const glm::dvec3& point_mm) const;
 };
 
-/// View at a time. aspect = width / height > 0. Throws Error(scene) where the camera is degenerate: eye on
-/// target, up along the view, near >= far, SID <= SAD.
+/// View at a time, of an eye between the two when there are two. aspect = width / height > 0. Throws
+/// Error(scene) where the camera is degenerate: eye on target, up along the view, near >= far, SID <= SAD.
 [[nodiscard]] View make_view(const CameraParams& camera, double aspect, double time_s = 0.0);
 
 /// Target UV (origin bottom-left) of a world point; none when the point is behind the eye or not finite.

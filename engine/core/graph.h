@@ -24,6 +24,7 @@ struct SizeRule {
     double scale = 1.0;  ///< of the frame's width and height, in (0, 4]
     int width = 0;       ///< [pixels]
     int height = 0;      ///< [pixels]
+    int columns = 1;     ///< pictures side by side: the width found by the above, so many times
 };
 
 /// What a named target is made of. A name that several passes write has one description.

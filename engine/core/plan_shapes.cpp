@@ -31,6 +31,7 @@ std::string apply_size(const SizeRule& rule, int width, int height, TargetShape&
         shape.width = scaled(std::max(width, 1), rule.scale);
         shape.height = scaled(std::max(height, 1), rule.scale);
     }
+    shape.width *= std::max(rule.columns, 1);
     return {};
 }
 

@@ -79,6 +79,10 @@ class Effect {
     virtual void validate() const {}
     /// Ports under the present parameters.
     [[nodiscard]] virtual std::vector<Port> ports() const = 0;
+    /// Whether prepare() or draw() look at Frame::eye(): such a pass runs once per eye, in an object of its
+    /// own for each; another runs once for both unless it reads what differs from eye to eye. An effect that
+    /// says no is given frames without an eye.
+    [[nodiscard]] virtual bool uses_view() const { return true; }
     /// Every program that draw() may use under the present parameters, so that all can be validated without a
     /// GPU.
     [[nodiscard]] virtual std::span<const ProgramDesc> programs() const = 0;

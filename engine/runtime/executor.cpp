@@ -90,7 +90,7 @@ class Executor::FramePrepare final : public Prepare {
 Executor::Executor(const Pass::Shared& shared, const gl::Capabilities& capabilities, Options options)
     : shared_(shared), capabilities_(capabilities), options_(std::move(options)), pool_(shared.gl) {}
 
-void Executor::set_plan(Plan plan, std::vector<ImportedTarget> imported, SceneEffects& effects,
+void Executor::set_plan(Plan plan, std::vector<ImportedTarget> imported, std::span<const PassEffect> effects,
                         bool same_scene) {
     std::vector<TargetPool::Kept> kept;
     if (same_scene) {
@@ -103,7 +103,10 @@ void Executor::set_plan(Plan plan, std::vector<ImportedTarget> imported, SceneEf
     imported_ = std::move(imported);
     passes_.clear();
     for (std::size_t p = 0; p < plan_.passes.size(); ++p) {
-        PassState state{.effect = effects.effects[p].get(), .parameters_key = effects.parameter_keys[p]};
+        PassState state{.effect = effects[p].effect,
+                        .parameters_key = effects[p].parameters_key,
+                        .origin = effects[p].origin};
+        state.frame = !state.effect->uses_view() ? 0 : state.origin.eye == 1 ? 2 : 1;
         state.ports = state.effect->ports();
         for (const PlanBinding& binding : plan_.passes[p].bindings) {
             const auto port = std::ranges::find(state.ports, binding.port, &Port::name);
@@ -117,10 +120,15 @@ void Executor::set_plan(Plan plan, std::vector<ImportedTarget> imported, SceneEf
     }
 }
 
-void Executor::replace_effect(std::size_t pass, Effect& effect, std::uint64_t parameters_key) {
-    passes_[pass].effect = &effect;
-    passes_[pass].parameters_key = parameters_key;
-    find_programs(passes_[pass]);
+void Executor::replace_effect(const PassEffect& effect) {
+    for (PassState& state : passes_) {
+        const bool right = state.origin.eye == 1;
+        if (state.origin.source == effect.origin.source && right == (effect.origin.eye == 1)) {
+            state.effect = effect.effect;
+            state.parameters_key = effect.parameters_key;
+            find_programs(state);
+        }
+    }
 }
 
 void Executor::find_programs(PassState& state) const {
@@ -133,8 +141,9 @@ void Executor::find_programs(PassState& state) const {
 void Executor::run(const Frame& frame, FrameReport& report) {
     turn_over();
     import(frame);
+    see(frame);
     try {
-        prepare(frame, report);
+        prepare(report);
         for (std::size_t p = 0; p < passes_.size(); ++p) {
             PassReport& pass = report.passes[p];
             const PassDecision& decision = schedule_.passes()[p];
@@ -142,7 +151,7 @@ void Executor::run(const Frame& frame, FrameReport& report) {
             pass.reason = decision.reason;
             if (decision.draws()) {
                 const Clock::time_point start = Clock::now();
-                pass.path = draw(frame, p) ? DrawPath::compute : DrawPath::fragment;
+                pass.path = draw(p) ? DrawPath::compute : DrawPath::fragment;
                 pass.cpu_ms += milliseconds_since(start);
             }
             if (passes_[p].timer) {
@@ -169,6 +178,18 @@ void Executor::forget_frame() {
     pool_.forget_content(kept);
 }
 
+void Executor::see(const Frame& frame) {
+    for (std::size_t i = 0; i < frames_.size(); ++i) {
+        Frame& seen = frames_[i];
+        seen = frame;
+        seen.eye_count = i == 0 ? 0 : 1;
+        seen.eye_index = i == 2 ? 1 : 0;
+        if (i == 2) {
+            seen.eyes[0] = frame.eyes[1];
+        }
+    }
+}
+
 void Executor::import(const Frame& frame) {
     imported_textures_.clear();
     imported_keys_.clear();
@@ -192,7 +213,7 @@ void Executor::import(const Frame& frame) {
     }
 }
 
-void Executor::prepare(const Frame& frame, FrameReport& report) {
+void Executor::prepare(FrameReport& report) {
     report.passes.resize(passes_.size());
     schedule_.begin(plan_, pool_.keys(), imported_keys_);
     for (std::size_t p = 0; p < passes_.size(); ++p) {
@@ -200,13 +221,14 @@ void Executor::prepare(const Frame& frame, FrameReport& report) {
         const PlanPass& pass = plan_.passes[p];
         report.passes[p].name = pass.name;
         report.passes[p].effect = pass.effect;
+        report.passes[p].eye = state.origin.eye;
         report.passes[p].cpu_ms = 0.0;
         report.passes[p].path.reset();
         if (!pass.live) {
             continue;
         }
         const Clock::time_point start = Clock::now();
-        FramePrepare view(*this, frame, p);
+        FramePrepare view(*this, frames_[state.frame], p);
         state.work = state.effect->prepare(view);
         // An effect may ask for more than there is.
         const glm::ivec2 size = target_size(plan_, pass);
@@ -231,7 +253,7 @@ const gl::Texture& Executor::texture_of(std::size_t content) const {
     return planned.imported ? imported_textures_[*planned.imported] : pool_.texture(*planned.texture);
 }
 
-bool Executor::draw(const Frame& frame, std::size_t p) {
+bool Executor::draw(std::size_t p) {
     PassState& state = passes_[p];
     const PlanPass& pass = plan_.passes[p];
     const gl::DebugGroup group(shared_.gl, pass.name);
@@ -275,7 +297,7 @@ bool Executor::draw(const Frame& frame, std::size_t p) {
     }
     target.bind();
     clear(state, pass, target, region.bounds());
-    const Pass view(shared_, frame, state.programs, state.inputs, state.outputs, size, region);
+    const Pass view(shared_, frames_[state.frame], state.programs, state.inputs, state.outputs, size, region);
     view.raster(gl::overwrite_state);
     state.effect->draw(view);
     if (state.timer) {

@@ -8,9 +8,9 @@
 #include "engine/core/schedule.h"
 #include "engine/gl/capabilities.h"
 #include "engine/gl/timer.h"
+#include "engine/runtime/eye_scene.h"
 #include "engine/runtime/pass.h"
 #include "engine/runtime/report.h"
-#include "engine/runtime/scene_graph.h"
 #include "engine/runtime/target_pool.h"
 
 namespace viscera {
@@ -27,12 +27,13 @@ class Executor {
 
     Executor(const Pass::Shared& shared, const gl::Capabilities& capabilities, Options options);
 
-    /// Takes a compiled graph and its effects, which must outlive it. Targets of the same size are kept,
-    /// their content is not, unless it is the last frame's and the scene the same as before.
-    void set_plan(Plan plan, std::vector<ImportedTarget> imported, SceneEffects& effects, bool same_scene);
-    /// Takes another effect of the same kind and ports for a pass: its parameters have changed. All that is
-    /// held stays.
-    void replace_effect(std::size_t pass, Effect& effect, std::uint64_t parameters_key);
+    /// Takes a compiled graph and the effects of its passes, which must outlive it. Targets of the same size
+    /// are kept, their content is not, unless it is the last frame's and the scene the same as before.
+    void set_plan(Plan plan, std::vector<ImportedTarget> imported, std::span<const PassEffect> effects,
+                  bool same_scene);
+    /// Takes another effect of the same kind and ports for all passes of this origin: its parameters have
+    /// changed. All that is held stays.
+    void replace_effect(const PassEffect& effect);
 
     /// Draws one frame and fills the report's passes. On an exception nothing counts as held any more but
     /// what the frames before left to be seen as `previous`.
@@ -63,6 +64,8 @@ class Executor {
     struct PassState {
         Effect* effect = nullptr;
         std::uint64_t parameters_key = 0;
+        EyePass origin;
+        std::size_t frame = 0;  ///< which of frames_ the effect sees
         std::vector<Port> ports;
         std::vector<std::size_t> port_of_binding;
         std::vector<ShaderLibrary::Entry*> programs;
@@ -74,9 +77,10 @@ class Executor {
     };
 
     void find_programs(PassState& state) const;
-    void prepare(const Frame& frame, FrameReport& report);
+    void see(const Frame& frame);
+    void prepare(FrameReport& report);
     /// True when it was done by a compute shader.
-    bool draw(const Frame& frame, std::size_t pass);
+    bool draw(std::size_t pass);
     void settle(const Settlement& settlement);
     void turn_over();
     void forget_frame();
@@ -99,6 +103,8 @@ class Executor {
     TargetPool pool_;
     Schedule schedule_;
     std::vector<PassState> passes_;
+    /// The frame as effects are given it: without an eye, by the left or only one, by the right one.
+    std::array<Frame, 3> frames_;
     bool ran_ = false;  ///< a frame has been drawn whose history has not turned over yet
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <cstdint>
 #include <map>
 #include <span>
@@ -8,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/core/camera.h"
+#include "engine/core/eyes.h"
 #include "engine/core/pixel_format.h"
 #include "engine/core/pixel_rect.h"
 #include "engine/core/volume.h"
@@ -77,16 +78,28 @@ struct Frame {
     std::uint64_t index = 0;
     double time_s = 0.0;
     std::array<View, 2> eyes{};
-    int eye_count = 1;                   ///< 1, or 2 (left, right)
+    int eye_count = 1;  ///< 1, or 2 (left, right); width and height are those of one eye's picture
+    /// Effects are given frames of one eye; this says which: 0 the left or only one, 1 the right.
+    int eye_index = 0;
     const HostValues* values = nullptr;  ///< null: the scene's timeline stands in
     std::span<const ImportedTexture> imported;
     std::span<const HostVolume> volumes;
     Quality quality{};
+    /// With two eyes: both side by side, the left one in the left half of the viewport; an output named
+    /// NAME.left or NAME.right alone.
     Present present;
-    bool capture = true;  ///< whether what the renderer dumps is read back from this frame
+    Present present_right;  ///< of the right eye alone, when enabled; `present` then shows the left one
+    bool capture = true;    ///< whether what the renderer dumps is read back from this frame
     HostStatePolicy host_state = HostStatePolicy::restore;
 
-    [[nodiscard]] const View& eye() const { return eyes[0]; }
+    void look(const Eyes& through) {
+        eyes = through.views;
+        eye_count = through.count;
+    }
+    [[nodiscard]] const View& eye() const {
+        assert(eye_count > 0 && "an effect whose uses_view() is false looks at the view");
+        return eyes[0];
+    }
     [[nodiscard]] double aspect() const { return static_cast<double>(width) / static_cast<double>(height); }
 };
 

@@ -30,14 +30,14 @@ Presenter::Presenter(const Pass::Shared& shared)
     : shared_(shared),
       program_(shared.shaders.entry({"common/fullscreen.vert", "common/present.frag", {}})) {}
 
-void Presenter::present(const Present& present, const gl::Texture* texture, const PlanContent& content) {
+void Presenter::present(const Present& present, const PixelRect& viewport, const gl::Texture* texture,
+                        const PlanContent& content) {
     const gl::Functions& gl = shared_.gl;
-    const gl::Rect viewport{present.viewport.x, present.viewport.y, present.viewport.width,
-                            present.viewport.height};
+    const gl::Rect place{viewport.x, viewport.y, viewport.width, viewport.height};
     gl::RasterState state = gl::overwrite_state;
-    state.scissor = viewport;  // a clear, too, must not leave the viewport
+    state.scissor = place;  // a clear, too, must not leave the viewport
     bind(gl, present);
-    gl::apply(gl, state, viewport);
+    gl::apply(gl, state, place);
     const bool grey = info(content.format).channels == 1;
     if (texture == nullptr) {
         const auto& c = content.clear;

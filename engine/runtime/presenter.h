@@ -10,9 +10,10 @@ class Presenter {
   public:
     explicit Presenter(const Pass::Shared& shared);
 
-    /// texture: null where the target holds nothing but its clear value. Throws Error(usage) for a
-    /// framebuffer that cannot be drawn into.
-    void present(const Present& present, const gl::Texture* texture, const PlanContent& content);
+    /// viewport: in place of present.viewport, of which it may be a half. texture: null where the target
+    /// holds nothing but its clear value. Throws Error(usage) for a framebuffer that cannot be drawn into.
+    void present(const Present& present, const PixelRect& viewport, const gl::Texture* texture,
+                 const PlanContent& content);
 
   private:
     Pass::Shared shared_;

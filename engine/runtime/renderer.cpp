@@ -14,6 +14,7 @@
 #include "engine/runtime/capture.h"
 #include "engine/runtime/embedded_shaders.h"
 #include "engine/runtime/executor.h"
+#include "engine/runtime/eye_scene.h"
 #include "engine/runtime/presenter.h"
 #include "engine/runtime/scene_graph.h"
 #include "engine/runtime/target_watch.h"
@@ -41,6 +42,14 @@ bool same_place(const Port& a, const Port& b) {
            a.size.scale == b.size.scale && a.size.width == b.size.width && a.size.height == b.size.height &&
            a.clear == b.clear && a.optional == b.optional && a.passthrough == b.passthrough &&
            a.overwrites == b.overwrites;
+}
+
+/// Of the frames that a scene is made for: two when it says so itself, or when the host brings something per
+/// eye.
+int eyes_of(const Scene& scene, std::span<const ImportedTarget> imported) {
+    const bool per_eye = std::ranges::any_of(
+        imported, [](const ImportedTarget& target) { return target.name.ends_with(".right"); });
+    return scene.camera.stereo || per_eye ? 2 : 1;
 }
 
 bool reads_history(const SceneEffects& scene) {
@@ -105,12 +114,13 @@ class Renderer::Impl {
         SceneEffects effects = make_effects(scene, registry_);
         // Compiled once for its faults, so that a scene that cannot run is refused while the old one still
         // can.
-        (void)compile_scene(scene, build_graph(scene, effects, imported), scene.width, scene.height,
-                            capabilities_.max_texture_2d);
+        (void)compile_scene(scene, EyeScene(scene, effects, imported, {}, eyes_of(scene, imported)).graph(),
+                            scene.width, scene.height, capabilities_.max_texture_2d);
         expected_.assign(imported.begin(), imported.end());
         scene_ = std::move(scene);
         timeline_ = TimelineValues(scene_.timeline);
         effects_ = std::move(effects);
+        right_effects_ = {};
         has_history_ = reads_history(effects_);
         assets_.begin_scene();
         planned_ = same_scene_ = false;
@@ -132,16 +142,24 @@ class Renderer::Impl {
                         "'" + std::string(pointer) + "' leads to no parameter");
         }
         SceneEffects effects = make_effects(changed, registry_);
-        if (!planned_ || !std::ranges::equal(effects.effects[index]->ports(),
-                                             effects_.effects[index]->ports(), same_place)) {
+        if (!planned_ || effects.effects[index]->uses_view() != effects_.effects[index]->uses_view() ||
+            !std::ranges::equal(effects.effects[index]->ports(), effects_.effects[index]->ports(),
+                                same_place)) {
             const std::vector<ImportedTarget> imported = expected_;
             set_scene(std::move(changed), imported);
             return;
         }
         // The graph is the same, so what other passes have drawn stays.
-        executor_.replace_effect(index, *effects.effects[index], effects.parameter_keys[index]);
-        std::swap(effects_.effects[index], effects.effects[index]);
-        effects_.parameter_keys[index] = effects.parameter_keys[index];
+        const auto take = [&](SceneEffects& made, SceneEffects& into, int eye) {
+            executor_.replace_effect({made.effects[index].get(), made.parameter_keys[index], {index, eye}});
+            std::swap(into.effects[index], made.effects[index]);
+            into.parameter_keys[index] = made.parameter_keys[index];
+        };
+        if (!right_effects_.effects.empty()) {
+            SceneEffects right = make_effects(changed, registry_);
+            take(right, right_effects_, 1);
+        }
+        take(effects, effects_, 0);
         scene_ = std::move(changed);
         assets_.begin_scene();
     }
@@ -150,6 +168,9 @@ class Renderer::Impl {
         const gl::CpuTimer timer;
         if (frame.width < 1 || frame.height < 1) {
             throw Error(ErrorCode::usage, "frame", "needs a width and a height of at least 1 pixel");
+        }
+        if (frame.eye_count != 1 && frame.eye_count != 2) {
+            throw Error(ErrorCode::usage, "frame", "has one eye or two");
         }
         // Written so that NaN is refused, too.
         if (!(frame.quality.step_factor >= 1.0 && std::isfinite(frame.quality.step_factor)) ||
@@ -170,6 +191,9 @@ class Renderer::Impl {
         if (capabilities_.debug_context) {
             messages.emplace(*gl_, log_);
         }
+        if (frame.eye_index != 0) {
+            throw Error(ErrorCode::usage, "frame", "eye_index is the renderer's own");
+        }
         plan_for(frame, planned_size(frame));
         report_.index = frame.index;
         report_.time_s = frame.time_s;
@@ -183,9 +207,7 @@ class Renderer::Impl {
             executor_.run(frame, report_);
             watch_.frame_done(executor_, frame.index, frame.time_s);
         }
-        if (frame.present.enabled) {
-            present(frame.present);
-        }
+        present(frame);
         report_.cpu_ms = timer.milliseconds();
         if (!dump_names_.empty() && frame.capture) {
             if (capabilities_.software) {
@@ -232,13 +254,19 @@ class Renderer::Impl {
     Image read(std::string_view target) {
         const std::optional<Executor::Output> output = executor_.output(target);
         if (!output) {
+            const std::vector<std::string> names = names_of(target);
             throw Error(ErrorCode::usage, std::string(target),
-                        "is no output of the last frame; dump it to have it kept");
+                        names.size() == 2 ? "is each eye's own: '" + names[0] + "' and '" + names[1] + "'"
+                                          : "is no output of the last frame; dump it to have it kept");
         }
         if (output->texture == nullptr) {
             return clear_image(*output->content);
         }
         return with_host_state([&] { return gl::read_texture(*gl_, *output->texture); });
+    }
+
+    std::vector<std::string> names_of(std::string_view name) const {
+        return eye_scene_ ? eye_scene_->names_of(name) : std::vector{std::string(name)};
     }
 
     unsigned texture(std::string_view output) const {
@@ -266,7 +294,9 @@ class Renderer::Impl {
     Pass::Shared shared_;
     Scene scene_;
     TimelineValues timeline_;
-    SceneEffects effects_;
+    SceneEffects effects_;               ///< of the only or the left eye, and of what both share
+    SceneEffects right_effects_;         ///< of the right eye; empty before the first frame of two
+    std::optional<EyeScene> eye_scene_;  ///< of the plan
     Executor executor_;
     Presenter presenter_;
     Capture capture_;
@@ -278,6 +308,7 @@ class Renderer::Impl {
     std::vector<ImportedTarget> imported_;  ///< as the last frame brought
     bool planned_ = false;
     bool same_scene_ = false;  ///< as when the last plan was made
+    int planned_eyes_ = 1;
     bool has_history_ = false;
     FrameReport report_;
 
@@ -293,8 +324,8 @@ class Renderer::Impl {
 
     void plan_for(const Frame& frame, glm::ivec2 size) {
         const bool same_imports = std::ranges::equal(imported_, frame.imported, same);
-        if (planned_ && same_imports && executor_.plan().width == size.x &&
-            executor_.plan().height == size.y) {
+        if (planned_ && same_imports && planned_eyes_ == frame.eye_count &&
+            executor_.plan().width == size.x && executor_.plan().height == size.y) {
             return;
         }
         planned_ = false;  // until all of the below has worked
@@ -303,30 +334,46 @@ class Renderer::Impl {
             imported_.push_back(
                 {texture.target, texture.format, texture.width, texture.height, texture.writable});
         }
-        const auto compile_with = [&](const std::vector<std::string>& more) {
-            return compile_scene(scene_, build_graph(scene_, effects_, imported_, more), size.x, size.y,
-                                 capabilities_.max_texture_2d);
+        if (frame.eye_count == 2 && right_effects_.effects.empty()) {
+            right_effects_ = make_effects(scene_, registry_);
+        }
+        const auto passes_with = [&](const std::vector<std::string>& more) {
+            return EyeScene(scene_, effects_, imported_, more, frame.eye_count);
         };
-        dump_names_.clear();
+        const auto compile = [&](const EyeScene& passes) {
+            return compile_scene(scene_, passes.graph(), size.x, size.y, capabilities_.max_texture_2d);
+        };
+        std::vector<std::string> dumped;
         switch (dump_.kind) {
             case DumpRequest::Kind::none:
                 break;
             case DumpRequest::Kind::outputs:
-                dump_names_ = scene_.outputs;
+                dumped = scene_.outputs;
                 break;
             case DumpRequest::Kind::names:
-                dump_names_ = dump_.names;
+                dumped = dump_.names;
                 break;
             case DumpRequest::Kind::all:
-                dump_names_ = live_targets(compile_with({}));
+                dumped = live_targets(compile(passes_with({})));
                 break;
         }
         // What is read back is an output: it keeps its texture to the end of the frame.
-        std::vector<std::string> more = dump_names_;
+        std::vector<std::string> more = dumped;
         more.insert(more.end(), kept_.begin(), kept_.end());
         const std::vector<std::string> watched = watch_.targets();
         more.insert(more.end(), watched.begin(), watched.end());
-        executor_.set_plan(compile_with(more), imported_, effects_, same_scene_);
+        EyeScene passes = passes_with(more);
+        Plan plan = compile(passes);
+        dump_names_.clear();
+        for (const std::string& name : dumped) {
+            for (std::string& one : passes.names_of(name)) {
+                dump_names_.push_back(std::move(one));
+            }
+        }
+        eye_scene_.emplace(std::move(passes));
+        executor_.set_plan(std::move(plan), imported_, eye_scene_->effects(effects_, right_effects_),
+                           same_scene_);
+        planned_eyes_ = frame.eye_count;
         planned_ = same_scene_ = true;
     }
 
@@ -341,13 +388,39 @@ class Renderer::Impl {
         return names;
     }
 
-    void present(const Present& present) {
+    void present(const Frame& frame) {
+        const bool apart = frame.eye_count == 2 && frame.present_right.enabled;
+        if (frame.present.enabled) {
+            show(frame.present, apart ? 0 : -1);
+        }
+        if (apart) {
+            show(frame.present_right, 1);
+        }
+    }
+
+    /// eye: the one of two that is shown; -1: whatever there is.
+    void show(const Present& present, int eye) {
         const std::string& name = present.output.empty() ? scene_.outputs.front() : present.output;
-        const std::optional<Executor::Output> output = executor_.output(name);
-        if (!output) {
+        const auto show_one = [&](const Executor::Output& output, const PixelRect& viewport) {
+            presenter_.present(present, viewport, output.texture, *output.content);
+        };
+        if (const auto own = eye < 0 ? std::nullopt : executor_.output(eye_name(name, eye))) {
+            return show_one(*own, present.viewport);
+        }
+        if (const auto output = executor_.output(name)) {
+            return show_one(*output, present.viewport);
+        }
+        const auto left = executor_.output(eye_name(name, 0));
+        const auto right = executor_.output(eye_name(name, 1));
+        if (!left || !right) {
             throw Error(ErrorCode::usage, name, "cannot be presented: it is no output of the scene");
         }
-        presenter_.present(present, output->texture, *output->content);
+        PixelRect half = present.viewport;
+        half.width /= 2;
+        show_one(*left, half);
+        half.x += half.width;
+        half.width = present.viewport.width - half.width;
+        show_one(*right, half);
     }
 };
 
@@ -370,7 +443,7 @@ void Renderer::set_parameter(std::string_view pass, std::string_view pointer, co
 Frame Renderer::still(double time_s) const {
     const Scene& scene = impl_->scene_;
     Frame frame{.width = scene.width, .height = scene.height, .time_s = time_s};
-    frame.eyes[0] = make_view(scene.camera, frame.aspect(), time_s);
+    frame.look(make_eyes(scene.camera, frame.aspect(), time_s));
     return frame;
 }
 Frame Renderer::frame(std::uint64_t index) const {
@@ -406,6 +479,9 @@ void Renderer::finish_captures() {
 }
 Image Renderer::read(std::string_view target) {
     return impl_->read(target);
+}
+std::vector<std::string> Renderer::names_of(std::string_view name) const {
+    return impl_->names_of(name);
 }
 unsigned Renderer::texture(std::string_view output) const {
     return impl_->texture(output);

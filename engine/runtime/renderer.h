@@ -110,15 +110,17 @@ class Renderer {
     /// Error(scene).
     void set_parameter(std::string_view pass, std::string_view pointer, const nlohmann::json& value);
 
-    /// Frame `index` of a sequence: size and camera as the scene gives them, time = index /
-    /// frames_per_second.
+    /// Frame `index` of a sequence: size and camera as the scene gives them (two eyes where it has `stereo`),
+    /// time = index / frames_per_second.
     [[nodiscard]] Frame frame(std::uint64_t index) const;
     /// A single picture of the scene at a time [s].
     [[nodiscard]] Frame still(double time_s) const;
     /// Whether what a frame shows depends on the frames before it (energy, blood): a sequence then has to be
     /// rendered from its beginning.
     [[nodiscard]] bool keeps_state() const;
-    /// Renders one frame. The report is valid until the next call.
+    /// Renders one frame, of one eye or of two. With two, what depends on the eye is drawn for each, and its
+    /// targets are called `NAME.left` and `NAME.right`; all else is drawn once. The report is valid until the
+    /// next call.
     const FrameReport& render(const Frame& frame);
 
     /// Targets kept to the end of each frame besides the scene's outputs, so that they can be presented and
@@ -141,6 +143,9 @@ class Renderer {
     /// not hold.
     [[nodiscard]] Image read(std::string_view target);
 
+    /// What the last frame called a target or output of the scene: its own name, or `NAME.left` and
+    /// `NAME.right` where each of two eyes has one.
+    [[nodiscard]] std::vector<std::string> names_of(std::string_view name) const;
     /// OpenGL name of the texture that holds an output of the last frame; valid until the next render(). 0:
     /// it is empty.
     [[nodiscard]] unsigned texture(std::string_view output) const;

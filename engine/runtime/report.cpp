@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "engine/core/eyes.h"
+
 namespace viscera {
 
 std::string_view to_string(DrawPath path) {
@@ -13,6 +15,7 @@ nlohmann::json to_json(const FrameReport& report) {
     for (const PassReport& pass : report.passes) {
         passes.push_back({{"name", pass.name},
                           {"effect", pass.effect},
+                          {"eye", pass.eye < 0 ? nlohmann::json() : nlohmann::json(eye_word(pass.eye))},
                           {"status", to_string(pass.status)},
                           {"reason", pass.reason},
                           {"path", pass.path ? nlohmann::json(to_string(*pass.path)) : nlohmann::json()},

@@ -22,6 +22,7 @@ enum class DrawPath { fragment, compute };
 struct PassReport {
     std::string name;
     std::string effect;
+    int eye = -1;  ///< 0 left, 1 right; -1: once for the frame
     PassStatus status = PassStatus::culled;
     std::string reason;
     std::optional<DrawPath> path;  ///< none when nothing was drawn

@@ -1,8 +1,13 @@
-// Walks one interval of a ray in slabs of u_slab mm that lie on one lattice from the interval's start, so that neither
+// Walks one interval of a ray in slabs of slab_mm that lie on one lattice from the interval's start, so that neither
 // skipping nor stopping ever moves a sample. The last slab covers what is left. What happens in a slab is the ray
 // function's: bool take_slab(inout State, Slab), true to stop.
 // Counters stay below 65,535 in total, where llvmpipe stops loops without a word: effects/volume/sampling.h sees to it.
 uniform float u_slab;  // [mm]
+#ifdef FOVEA
+float slab_mm;  // of this ray, whose slabs lie on a lattice of their own: volume/fovea.glsl
+#else
+#define slab_mm u_slab
+#endif
 uniform int u_slab_limit;
 
 const int smooth_slabs = 4;  // slabs that are one where the transfer function hardly changes
@@ -11,17 +16,17 @@ const int smooth_slabs = 4;  // slabs that are one where the transfer function h
 Slab slab_at(float start, vec3 first, vec3 extent, int k, float number, float slabs, float offset) {
     float part = min(slabs - float(k), number);
     float middle = float(k) + (0.5 + offset) * part;
-    return Slab(first + middle * extent, extent * part, u_slab * part, start + middle * u_slab);
+    return Slab(first + middle * extent, extent * part, slab_mm * part, start + middle * slab_mm);
 }
 
 void march(Ray ray, vec2 interval, float offset, inout State state) {
-    float slabs = min((interval.y - interval.x) / u_slab, float(u_slab_limit));
+    float slabs = min((interval.y - interval.x) / slab_mm, float(u_slab_limit));
     if (!(slabs > 0.0)) {
         return;
     }
     int count = int(ceil(slabs));
     vec3 first = ray.origin + interval.x * ray.direction;
-    vec3 extent = ray.direction * u_slab;
+    vec3 extent = ray.direction * slab_mm;
 #ifdef SKIP
     Leaper leaper = make_leaper(first, extent);
     vec2 span = clamp(occupied_span(leaper), 0.0, float(count));

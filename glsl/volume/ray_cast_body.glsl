@@ -45,10 +45,16 @@
 #else
 #include "volume/march.glsl"
 #endif
+#if defined(FOVEA) && !defined(ISOSURFACE)
+#include "volume/fovea.glsl"
+#endif
 #ifdef JITTER
 #include "volume/jitter.glsl"
 #endif
 #include "volume/picture.glsl"
+#if defined(MIXED_COARSE) || defined(MIXED_FINE)
+#include "volume/mixed.glsl"
+#endif
 #ifdef LIMITS
 #include "volume/limits.glsl"
 #endif
@@ -61,9 +67,20 @@ uniform float u_sub_volume_depth;  // [mm]
 #endif
 
 vec4 cast_ray(vec2 pixel) {
+#ifdef MIXED_COARSE
+    pixel = lattice_pixel(pixel);
+#endif
     Ray ray = pixel_ray(pixel);
+#ifdef MIXED_FINE
+    vec4 from_coarse;
+    bool is_filled = filled_in(ray, pixel, from_coarse);
+    ray.far = is_filled ? ray.near : ray.far;
+#endif
 #ifdef SURFACE
     ray.far = min(ray.far, surface_along(ray, pixel));
+#endif
+#if defined(FOVEA) && !defined(ISOSURFACE)
+    slab_mm = u_slab * fovea_factor(pixel);
 #endif
     look_along(ray.world);
     State state = begin();
@@ -101,6 +118,9 @@ vec4 cast_ray(vec2 pixel) {
     }
     // What misses the volume is left as it was, also where an X-ray would say that nothing was absorbed.
     vec4 seen = met ? finish(state) : vec4(0.0);
+#ifdef MIXED_FINE
+    seen = is_filled ? from_coarse : seen;
+#endif
 #ifdef BACKGROUND
     return over_background(seen, pixel);
 #else

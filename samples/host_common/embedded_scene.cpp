@@ -39,7 +39,7 @@ void EmbeddedScene::draw(double time_s, unsigned framebuffer, const viscera::Pix
     viscera::Frame frame = renderer_.still(time_s);
     frame.width = viewport.width;
     frame.height = viewport.height;
-    frame.eyes[0] = viscera::make_view(renderer_.scene().camera, frame.aspect(), time_s);
+    frame.look(viscera::make_eyes(renderer_.scene().camera, frame.aspect(), time_s));
     frame.values = &values_;
     frame.present = {.enabled = true, .framebuffer = framebuffer, .viewport = viewport};
     frame.host_state = viscera::HostStatePolicy::restore;

@@ -1,7 +1,7 @@
 #include <iostream>
 
 #include "engine/core/plan_dump.h"
-#include "engine/runtime/scene_graph.h"
+#include "engine/runtime/eye_scene.h"
 #include "samples/viscera/commands.h"
 #include "samples/viscera/session.h"
 
@@ -20,7 +20,8 @@ void add_check(CLI::App& app, int& exit_code) {
     command->callback([arguments, &exit_code] {
         const Scene scene = arguments->scene.load();
         const SceneEffects effects = make_effects(scene, make_registry());
-        const Plan plan = compile_scene(scene, build_graph(scene, effects, {}), scene.width, scene.height);
+        const EyeScene passes(scene, effects, {}, {}, scene.camera.stereo ? 2 : 1);
+        const Plan plan = compile_scene(scene, passes.graph(), scene.width, scene.height);
         std::cout << (arguments->dot ? to_dot(plan) : to_table(plan));
         exit_code = 0;
     });

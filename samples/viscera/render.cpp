@@ -177,6 +177,10 @@ int render(const RenderArguments& arguments) {
     nlohmann::json& frames = document["frames"] = nlohmann::json::array();
     std::vector<std::string> png = split(arguments.png);
     png.insert(png.end(), renderer.scene().outputs.begin(), renderer.scene().outputs.end());
+    for (std::size_t i = 0, count = png.size(); renderer.scene().camera.stereo && i < count; ++i) {
+        png.push_back(eye_name(png[i], 0));
+        png.push_back(eye_name(png[i], 1));
+    }
     std::mutex mutex;
     const std::uint64_t total = range.end - range.first;
     FrameWriter writer({.folder = arguments.folder,

@@ -123,8 +123,9 @@ class Viewer {
     }
 
     [[nodiscard]] Frame make_frame(PixelSize size) const {
-        Frame frame{.width = size.width, .height = size.height, .time_s = time_s_};
-        frame.eyes[0] = make_view(camera_, frame.aspect(), time_s_);
+        const int pictures = camera_.stereo ? 2 : 1;  // side by side
+        Frame frame{.width = std::max(1, size.width / pictures), .height = size.height, .time_s = time_s_};
+        frame.look(make_eyes(camera_, frame.aspect(), time_s_));
         frame.host_state = HostStatePolicy::host_resets;
         frame.present = {.enabled = true,
                          .output = targets_[target_],
@@ -136,8 +137,16 @@ class Viewer {
     /// Every target that lives can be looked at; what is looked at becomes an output.
     void list_targets() {
         for (const PlanContent& content : renderer_.plan().contents) {
-            if (content.writer && content.texture && content.target != targets_.front()) {
-                targets_.push_back(content.target);
+            if (!content.writer || !content.texture) {
+                continue;
+            }
+            // What each eye has is shown of both.
+            const std::string base = content.target.substr(0, content.target.rfind('.'));
+            const auto own = renderer_.names_of(base);
+            const std::string& name =
+                std::ranges::find(own, content.target) == own.end() ? content.target : base;
+            if (std::ranges::find(targets_, name) == targets_.end()) {
+                targets_.push_back(name);
             }
         }
     }
@@ -227,16 +236,18 @@ class Viewer {
             renderer_.render(make_frame(window_.framebuffer_size()));
         }
         std::filesystem::create_directories(arguments_.folder);
-        const std::string& name = targets_[target_];
-        const std::filesystem::path file =
-            arguments_.folder / (name + "." + std::to_string(saved_++) + extension);
-        io::ExrPart part{.name = name, .image = renderer_.read(name)};
-        if (extension == ".exr") {
-            io::write_exr(file, std::span(&part, 1));
-        } else {
-            io::write_png(file, part.image, {.alpha = false});
+        for (const std::string& name : renderer_.names_of(targets_[target_])) {
+            const std::filesystem::path file =
+                arguments_.folder / (name + "." + std::to_string(saved_) + extension);
+            io::ExrPart part{.name = name, .image = renderer_.read(name)};
+            if (extension == ".exr") {
+                io::write_exr(file, std::span(&part, 1));
+            } else {
+                io::write_png(file, part.image, {.alpha = false});
+            }
+            std::cout << file.string() << '\n';
         }
-        std::cout << file.string() << '\n';
+        ++saved_;
     }
 
     const ViewArguments& arguments_;
@@ -261,7 +272,9 @@ int view(const ViewArguments& arguments) {
     Scene scene = arguments.scene.load();
     const Registry registry = make_registry();
     const std::unique_ptr<WindowContext> window =
-        create_window({.width = scene.width, .height = scene.height, .title = "viscera: " + scene.name});
+        create_window({.width = scene.width * (scene.camera.stereo ? 2 : 1),
+                       .height = scene.height,
+                       .title = "viscera: " + scene.name});
     const LogCallback log = stderr_log();
     name_renderer(window->info(), log);
     TitleProgress progress(*window, "viscera: " + scene.name);

@@ -133,6 +133,28 @@ TEST_P(WarmFrameTest, AMovedOrganBehindAMembraneAllocatesNothing) {
     }
 }
 
+TEST_P(WarmFrameTest, TwoEyesInMixedResolutionAllocateNothing) {
+    const LiveVolume head(bytes_of_noise(24, 4.0));
+    const std::array<HostVolume, 1> given{HostVolume{"head", &head}};
+    set_scene(R"({"version": 1, "resolution": [64, 64], "outputs": ["volume.colour"],
+        "camera": {"eye_mm": [0, -300, 60], "orbit_deg_per_s": 20, "stereo": {"layout": "side_by_side"}},
+        "shared": {"head": {"volume": {"host": "head"}, "sampling": {"fovea": {}},
+            "transfer_function": {"points": [{"value": 40, "opacity": 0}, {"value": 200, "opacity": 0.1}]}}},
+        "passes": [
+            {"name": "coarse", "effect": "volume.ray_cast",
+             "parameters": {"$ref": "#/shared/head", "mixed": {"pass": "coarse"}}},
+            {"name": "fine", "effect": "volume.ray_cast",
+             "parameters": {"$ref": "#/shared/head", "mixed": {"pass": "fine"}}}]})");
+    double time_s = 1.5;
+    for (int i = 0; i < 3; ++i) {
+        (void)allocations(time_s += 0.01, given);
+    }
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_EQ(allocations(time_s += 0.01, given), 0U) << "at " << time_s << " s";
+        EXPECT_EQ(drawn(), 5U);
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(HostState, WarmFrameTest,
                          testing::Values(HostStatePolicy::restore, HostStatePolicy::host_resets),
                          [](const auto& info) {

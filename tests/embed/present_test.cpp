@@ -90,6 +90,46 @@ TEST_P(Presented, ShowsThePicturePixelByPixel) {
     }
 }
 
+TEST_P(Presented, EachEyeGoesWhereTheHostSays) {
+    Renderer renderer = make_renderer();
+    renderer.set_scene(world().small());
+    const HostCanvas both(gl(), 192, 80, PixelFormat::rgba32f);
+    const HostCanvas left(gl(), 96, 80, PixelFormat::rgba32f);
+    const HostCanvas right(gl(), 96, 80, PixelFormat::rgba32f);
+    Frame frame = renderer.still(World::time_s);
+    frame.eyes = {shifted_view(frame.eyes[0], -40.0, 700.0), shifted_view(frame.eyes[0], 40.0, 700.0)};
+    frame.eye_count = 2;
+    frame.present = {.enabled = true, .framebuffer = both.framebuffer.id(), .viewport = {0, 0, 192, 80}};
+    poison();
+    expect_untouched("a frame of two eyes", [&] { renderer.render(frame); });
+    unpoison();
+    const std::array<Image, 2> pictures{renderer.read("final.left"), renderer.read("final.right")};
+    ASSERT_NE(pictures[0].data, pictures[1].data);
+    const auto expect_shown = [](const Image& shown, int first, const Image& picture) {
+        for (int y = 0; y < 80; ++y) {
+            for (int x = 0; x < 96; ++x) {
+                ASSERT_NEAR(shown.at(first + x, y, 0), picture.at(x, y, 0), 1e-5F) << x << ", " << y;
+            }
+        }
+    };
+    const Image side_by_side = both.read(gl());
+    expect_shown(side_by_side, 0, pictures[0]);
+    expect_shown(side_by_side, 96, pictures[1]);
+
+    frame.present.framebuffer = left.framebuffer.id();
+    frame.present.viewport.width = 96;
+    frame.present_right = frame.present;
+    frame.present_right.framebuffer = right.framebuffer.id();
+    renderer.render(frame);
+    expect_shown(left.read(gl()), 0, pictures[0]);
+    expect_shown(right.read(gl()), 0, pictures[1]);
+
+    frame.present_right.enabled = false;
+    frame.present.output = "final.right";
+    renderer.render(frame);
+    expect_shown(left.read(gl()), 0, pictures[1]);
+}
+
 TEST_P(Presented, IsTheSameWhenTheFrameIsCached) {
     Renderer renderer = make_renderer();
     renderer.set_scene(world().small());

@@ -45,7 +45,10 @@ struct ScenePassText {
 class RuntimeTest : public GlTest {
   protected:
     void add(const std::string& name, Recipe recipe) {
-        registry_.add(name, "A recipe.", [recipe] { return std::make_unique<RecipeEffect>(recipe); });
+        add_effect(name, [recipe] { return std::make_unique<RecipeEffect>(recipe); });
+    }
+    void add_effect(const std::string& name, Registry::Factory make) {
+        registry_.add(name, "A recipe.", std::move(make));
     }
     Renderer& renderer() {
         if (!renderer_) {

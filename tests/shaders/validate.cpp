@@ -141,6 +141,8 @@ std::vector<ParameterSet> parameter_sets() {
         {"volume.slice",
          R"({"volume": {"file": "any.mha", "geometry": {"kind": "spherical"}}, "view": "camera",
                 "sampling": {"filter": "bspline"}})"},
+        cast(R"("sampling": {"fovea": {}}, "mixed": {"pass": "coarse"})"),
+        cast(R"("sampling": {"fovea": {}}, "mixed": {"pass": "fine"})"),
         {"mesh.surface", R"({"mesh": "any.obj", "lights": [{}, {}]})"},
         {"organ.surface",
          R"({"mesh": {"file": "any.obj"}, "diffuse_map": "a.png", "normal_map": {"map": "b.png"},
@@ -169,7 +171,8 @@ std::optional<std::filesystem::path> find_validator() {
 std::vector<ProgramDesc> all_programs() {
     Registry registry;
     register_all(registry);
-    std::vector<ProgramDesc> programs{{"common/fullscreen.vert", "common/present.frag", {}}};
+    std::vector<ProgramDesc> programs{{"common/fullscreen.vert", "common/present.frag", {}},
+                                      {"common/fullscreen.vert", "common/side_by_side.frag", {}}};
     for (const Registry::Entry& entry : registry.entries()) {
         const std::unique_ptr<Effect> effect = entry.make();
         const auto own = effect->programs();
@@ -188,10 +191,12 @@ std::vector<ProgramDesc> all_programs() {
         // parameters validate them, and sets of their own; with every set it would only take ten times as
         // long.
         const bool curved = set.parameters.find("geometry") != std::string::npos;
+        const bool mixed = set.parameters.find("mixed") != std::string::npos;
         std::ranges::copy_if(effect->programs(), std::back_inserter(programs),
                              [&](const ProgramDesc& program) {
                                  return std::ranges::none_of(program.defines, [&](const std::string& define) {
-                                     return define == "SURFACE" || define == "BACKGROUND" ||
+                                     // Filling in heeds surfaces.
+                                     return (define == "SURFACE" && !mixed) || define == "BACKGROUND" ||
                                             (!curved && define.starts_with("COORDINATES"));
                                  });
                              });

@@ -5,7 +5,7 @@
 namespace viscera::app {
 
 std::span<const Case> all_cases() {
-    static constexpr std::array<Case, 26> cases{{
+    static constexpr std::array<Case, 29> cases{{
         {"ceilings", "copy and clear per format, fetches, exp, vertices, triangles", run_ceilings},
         {"readback", "read-back per format, waiting and not waiting", run_read_back},
         {"geometry", "one pass over the vessels against three", run_geometry},
@@ -33,6 +33,9 @@ std::span<const Case> all_cases() {
         {"tissue_bake", "a surface whose vertices move, as textures, against copies of the same bytes",
          run_tissue_bake},
         {"tissue_energy", "coagulation by the part of the texture that contacts reach", run_tissue_energy},
+        {"mixed", "the volume at a fraction of the resolution, beside its error", run_mixed},
+        {"eyes", "two eyes in one frame against two frames", run_eyes},
+        {"fovea", "longer steps away from where one looks, beside their error", run_fovea},
     }};
     return cases;
 }

@@ -43,5 +43,8 @@ void run_curvilinear(Lab& lab);
 void run_blood(Lab& lab);
 void run_tissue_bake(Lab& lab);
 void run_tissue_energy(Lab& lab);
+void run_mixed(Lab& lab);
+void run_eyes(Lab& lab);
+void run_fovea(Lab& lab);
 
 }  // namespace viscera::app
