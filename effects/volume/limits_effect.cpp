@@ -149,7 +149,17 @@ Work LimitsEffect::prepare(Prepare& prepare) {
         parameters_key_ = prepare.parameters_key();
         grid_ = grid;
         space_ = make_space(grid, params_.volume.placement);
-        mesh_key_ = Hash().add(parameters_key_).add(space_.local_to_world).value();
+        // Sectors of many shapes have one local space; cropped by voxels, the same shape has many ends.
+        const VolumeShape& shape = space_.shape;
+        mesh_key_ =
+            Hash()
+                .add(parameters_key_)
+                .add(space_.local_to_world)
+                .add(grid.dims)
+                .add(shape.kind)
+                .add(glm::dvec4(shape.r_min_mm, shape.first_angle_rad, shape.angle_rad, shape.height_mm))
+                .add(glm::dvec2(shape.latitude_rad, shape.wrap ? 1.0 : 0.0))
+                .value();
         mesh_ = {};
         if (invertible(space_.local_to_world) && !space_.shape.flat()) {
             find_mesh(prepare);

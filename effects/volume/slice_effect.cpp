@@ -78,7 +78,8 @@ void SliceEffect::find_surface(Prepare& prepare) {
                                  params_.mesh_placement, space_.local_to_world, prepare.log());
     }
     bounds_ = surface_.bounds();
-    surface_key_ = Hash().add(parameters_key_).add(space_.local_to_world).value();
+    surface_key_ =
+        Hash().add(parameters_key_).add(space_.local_to_world).add(space_.low).add(space_.high).value();
 }
 
 Work SliceEffect::prepare(Prepare& prepare) {

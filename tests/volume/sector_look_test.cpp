@@ -126,7 +126,8 @@ TEST(SectorLimits, AnalyticDrawnAndMeshedOnesAgree) {
         limits["limits_mesh"] = folder.write(std::string(named.name) + ".obj", obj_text(mesh)).string();
         const Image meshed =
             mixed_shot(stage, mixed_scene(limit_passes(limits, true), cast("mesh", common), camera), volume);
-        for (const Image& other : {drawn, meshed}) {
+        for (const auto& [what, other] : {std::pair("drawn", drawn), std::pair("meshed", meshed)}) {
+            SCOPED_TRACE(what);
             const Difference d = difference(analytic, other, 1e-3);
             EXPECT_LE(d.mean, 1e-4);
             // At edges coverage decides; there the way through the volume is short.
