@@ -289,6 +289,10 @@ Json describe(const std::filesystem::path& file) {
     constexpr std::array images{".exr", ".png", ".jpg", ".jpeg"};
     constexpr std::array geometry{".gltf", ".glb", ".stl", ".obj", ".ply", ".vtp", ".json"};
     const std::string extension = lower_extension(file);
+    std::error_code ignored;
+    if (!std::filesystem::exists(file, ignored)) {
+        throw Error(ErrorCode::file, file.string(), "does not exist");
+    }
     Json result;
     const auto add_faults = [&result](const Log& log) {
         result["faults"] = Json::object();

@@ -19,7 +19,7 @@ class Cache : public AppTest {
         write_scene(nlohmann::json::parse(R"({
             "version": 1, "resolution": [16, 12], "camera": {"eye_mm": [0, -80, 0]},
             "passes": [{"name": "cast", "effect": "volume.ray_cast", "parameters": {
-                "volume": {"file": "cube.nrrd"}, "reconstruction": {"filter": "bspline"},
+                "volume": {"file": "cube.nrrd"}, "sampling": {"filter": "bspline"},
                 "transfer_function": {"points": [{"value": 0, "opacity": 0}, {"value": 200, "opacity": 0.5}]}}}],
             "outputs": ["volume.colour"]})"));
     }

@@ -229,9 +229,10 @@ TEST(FileInfo, TellsClosedFromOpenAndWhichWayRound) {
 
 TEST(FileInfo, UnknownFilesSayWhatToDo) {
     const TempFolder folder;
-    EXPECT_THAT(message_of([&] { static_cast<void>(describe(folder / "a.fbx")); }),
+    EXPECT_THAT(message_of([&] { static_cast<void>(describe(folder.write("a.fbx", ""))); }),
                 testing::AllOf(HasSubstr(".glb"), HasSubstr("Blender")));
-    EXPECT_THAT(message_of([&] { static_cast<void>(describe(folder / "a.xyz")); }), HasSubstr("assimp"));
+    EXPECT_THAT(message_of([&] { static_cast<void>(describe(folder.write("a.xyz", ""))); }),
+                HasSubstr("assimp"));
 }
 
 }  // namespace
