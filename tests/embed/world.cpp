@@ -168,6 +168,8 @@ Scene World::everything() const {
      "parameters": {"volume": {"file": "ball.mha"}, "transfer_function": {"window": {"width": 100, "level": 50}}}},
     {"name": "entry", "effect": "volume.entry", "parameters": {"volume": {"file": "ball.mha"}}},
     {"name": "exit", "effect": "volume.exit", "parameters": {"volume": {"file": "ball.mha"}}},
+    {"name": "inner_exit", "effect": "volume.inner_exit", "parameters": {"volume": {"file": "ball.mha"}}},
+    {"name": "inner_entry", "effect": "volume.inner_entry", "parameters": {"volume": {"file": "ball.mha"}}},
     {"name": "cast", "effect": "volume.ray_cast",
      "parameters": {"volume": {"file": "ball.mha"}, "sampling": {"limits": "two_pass"},
        "transfer_function": {"points": [{"value": 10, "opacity": 0}, {"value": 200, "opacity": 0.05}]}}},
@@ -176,7 +178,7 @@ Scene World::everything() const {
   "targets": {"contrast.capillary": {"scale": 0.5}, "tissue.blood_spill": {"size": [64, 64]}},
   "outputs": ["final", "contrast.distance_view", "contrast.mask", "contrast.reflux", "contrast.extravasate",
               "alone.cloud", "alone.distance", "depth.main", "painter.main", "host.main", "volume.colour",
-              "volume.slice", "organ.final", "tissue.energy", "tissue.position", "tissue.blood_account"]
+              "volume.slice", "volume.inner_entry", "volume.inner_exit", "organ.final", "tissue.energy", "tissue.position", "tissue.blood_account"]
 })json");
 }
 
