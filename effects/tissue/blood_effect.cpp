@@ -229,6 +229,7 @@ void BloodEffect::update_surface(const Pass& pass) {
         state.moving = true;
         state.gpu->look_at_tiles(pass, medium_, state.ring.alive(), true);
         state.looked_at = state.step;
+        state.looked_run = state.steps_run;
         state.disturbed_at = ++state.looks + 1;
     }
 }
@@ -287,10 +288,13 @@ void BloodEffect::run_step(const Pass& pass) {
     collect_drops(step);
     state.ring.pass_to(state.steps_run++);
     // Two looks without a step between them would find that nothing has changed.
-    const bool due = step % steps_per_look == 0 && step != state.looked_at;
+    // Gaps between frames may leave out steps at which a look is due.
+    const bool due = step != state.looked_at &&
+                     (step % steps_per_look == 0 || state.steps_run - 1 - state.looked_run >= steps_per_look);
     if (due || medium_.tools.size() != state.tool_count) {
         state.gpu->look_at_tiles(pass, medium_, state.ring.alive(), !medium_.tools.empty());
         state.looked_at = step;
+        state.looked_run = state.steps_run - 1;
         ++state.looks;
     }
     if (!medium_.tools.empty() || state.tool_count != 0) {
@@ -346,7 +350,7 @@ void BloodEffect::draw(const Pass& pass) {
     }
     const bool caps = state.gpu->draw_caps(pass, medium_, state.ring.alive());
     pass.gl().BindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(target));
-    pass.raster(gl::overwrite_state);
+    pass.raster(cover_state);
     const gl::Program& program = pass.use(programs_.size() - (caps ? 1 : 2));
     pass.bind(program, "u_film", state.gpu->film(), gl::Filter::nearest);
     pass.bind(program, "u_metric", "metric");

@@ -23,6 +23,8 @@ enum class Shader : std::size_t {
     counted,
     counted_energy,
     scan,
+    search,
+    plan,
     mark_of_drops,
     mark_of_seams,
     settle,
@@ -30,12 +32,28 @@ enum class Shader : std::size_t {
 };
 
 constexpr int tile_side = 32;
+constexpr int block_side = 8;  // divides a tile's
+// Blocks that are marked around one across a seam: what a drop leaves there lies at most 15 texels off, five
+// texels of gutter stretched threefold.
+constexpr float beyond_extent = 5.0F;
 constexpr int ring_width = 256;
 constexpr int link_width = 512;
 constexpr int spawn_width = 128;  // two texels for each drop
 constexpr int spawn_rows = 16;
 constexpr int deposit_points = 4;
 constexpr int sources = 64;
+// Marks are points as large as what they mark.
+constexpr gl::RasterState mark_state = [] {
+    gl::RasterState state = gl::max_blend_state;
+    state.program_point_size = true;
+    return state;
+}();
+// Drops mark where blood is, not where it was found.
+constexpr gl::RasterState held_mark_state = [] {
+    gl::RasterState state = mark_state;
+    state.colour_mask = {true, false, false, false};
+    return state;
+}();
 // A film that creeps more slowly stands [mm/s].
 constexpr float still_mm_s = 5e-4F;
 
@@ -69,6 +87,30 @@ void clear(const Pass& pass, const gl::Framebuffer& target, float value = 0.0F) 
     target.clear_colour(0, {value, value, value, value});
 }
 
+/// Which squares of a side a list of links joins, each pair once: x, y here, x, y across.
+gl::Texture pairs_of(const gl::Functions& gl, std::span<const SeamLink> links, int size, int side,
+                     int& count) {
+    std::vector<std::array<int, 4>> found;
+    found.reserve(links.size());
+    for (const SeamLink& link : links) {
+        const int from = static_cast<int>(link.from);
+        const int to = static_cast<int>(link.to);
+        found.push_back({from % size / side, from / size / side, to % size / side, to / size / side});
+    }
+    std::ranges::sort(found);
+    found.erase(std::ranges::unique(found).begin(), found.end());
+    count = static_cast<int>(found.size());
+    const int rows = std::max((count + link_width - 1) / link_width, 1);
+    std::vector<glm::vec4> texels(static_cast<std::size_t>(rows) * link_width, glm::vec4(0.0F));
+    std::ranges::transform(found, texels.begin(), [](const std::array<int, 4>& pair) {
+        return glm::vec4(glm::ivec4(pair[0], pair[1], pair[2], pair[3]));
+    });
+    gl::Texture texture =
+        gl::Texture::make_2d(gl, link_width, rows, PixelFormat::rgba32f, "squares that seams join");
+    texture.upload(std::as_bytes(std::span(texels)));
+    return texture;
+}
+
 void bind(const Pass& pass, const gl::Program& program, std::string_view uniform,
           const gl::Texture& texture) {
     pass.bind(program, uniform, texture, gl::Filter::nearest);
@@ -93,6 +135,8 @@ std::vector<ProgramDesc> BloodGpu::programs() {
             {"tissue/blood_spawn.vert", "tissue/blood_spawn.frag", {"LEDGER"}},
             {"tissue/blood_spawn.vert", "tissue/blood_spawn.frag", {"LEDGER", "ENERGY"}},
             {whole, "tissue/blood_scan.frag", {}},
+            {whole, "tissue/blood_search.frag", {}},
+            {whole, "tissue/blood_plan.frag", {}},
             {"tissue/blood_mark.vert", "tissue/blood_mark.frag", {}},
             {"tissue/blood_mark.vert", "tissue/blood_mark.frag", {"SEAMS"}},
             {tile, "tissue/blood_copy.frag", {"SETTLED"}},
@@ -103,6 +147,7 @@ BloodGpu::BloodGpu(const gl::Functions& gl, int size, int max_drops)
     : gl_(&gl),
       size_(size),
       tiles_((size + tile_side - 1) / tile_side),
+      blocks_((size + block_side - 1) / block_side),
       film_(pair_of(gl, size, size, PixelFormat::rgba32f, "film of blood")),
       drops_(pair_of(gl, ring_width, (max_drops + ring_width - 1) / ring_width, PixelFormat::rgba32f,
                      "drops of blood")),
@@ -110,6 +155,9 @@ BloodGpu::BloodGpu(const gl::Functions& gl, int size, int max_drops)
                                     "what drops leave behind")),
       marks_(pair_of(gl, tiles_, tiles_, PixelFormat::rg8, "tiles of blood")),
       across_(pair_of(gl, tiles_, tiles_, PixelFormat::r8, "tiles of blood across seams")),
+      held_(pair_of(gl, blocks_, blocks_, PixelFormat::rgba8, "blocks of blood")),
+      beyond_(gl::Texture::make_2d(gl, blocks_, blocks_, PixelFormat::r8, "blocks of blood across seams")),
+      plan_(pair_of(gl, blocks_, blocks_, PixelFormat::rg8, "blocks to be stepped")),
       spawn_(gl::Texture::make_2d(gl, spawn_width, spawn_rows, PixelFormat::rgba32f, "new drops of blood")),
       ledger_(gl::Texture::make_2d(gl, sources, 1, PixelFormat::r32f, "blood by source")),
       film_target_(targets_of(gl, film_, "film of blood")),
@@ -117,6 +165,9 @@ BloodGpu::BloodGpu(const gl::Functions& gl, int size, int max_drops)
       drops_alone_(targets_of(gl, drops_, "drops of blood")),
       marks_target_(targets_of(gl, marks_, "tiles of blood")),
       across_target_(targets_of(gl, across_, "tiles of blood across seams")),
+      held_target_(targets_of(gl, held_, "blocks of blood")),
+      beyond_target_(gl, beyond_, "blocks of blood across seams"),
+      plan_target_(targets_of(gl, plan_, "blocks to be stepped")),
       ledger_target_(gl, ledger_, "blood by source"),
       spawn_rows_(static_cast<std::size_t>(spawn_width / 2 * spawn_rows)),
       tile_answers_(gl) {}
@@ -149,10 +200,9 @@ void BloodGpu::set_tools(const Pass& pass, const gl::Program& program, const Blo
 }
 
 void BloodGpu::cover_tiles(const Pass& pass, const gl::Program& program) const {
-    bind(pass, program, "u_tiles", marks_[marks_now_]);
-    bind(pass, program, "u_across", across_[marks_now_]);
+    bind(pass, program, "u_plan", plan_[marks_now_]);
     program.set("u_size", glm::vec2(static_cast<float>(size_)));
-    pass.draw_generated(GL_TRIANGLE_STRIP, 4, tiles_ * tiles_);
+    pass.draw_generated(GL_POINTS, blocks_ * blocks_, 1);
 }
 
 void BloodGpu::cover_visible(const Pass& pass, const gl::Program& program) const {
@@ -182,7 +232,10 @@ void BloodGpu::take_surface(const Pass& pass, const BloodMedium& medium, bool em
             clear(pass, drops_alone_[i]);
             clear(pass, marks_target_[i], spill ? 1.0F : 0.0F);
             clear(pass, across_target_[i]);
+            clear(pass, held_target_[i], spill ? 1.0F : 0.0F);
+            clear(pass, plan_target_[i], spill ? 1.0F : 0.0F);
         }
+        clear(pass, beyond_target_);
         clear(pass, ledger_target_);
     }
     if (link_count_ > 0) {
@@ -206,6 +259,8 @@ void BloodGpu::find_seams(const Pass& pass) {
                            gl::read_texture(*gl_, *pass.texture("seam")));
     }
     link_count_ = static_cast<int>(links.size());
+    tile_pairs_ = pairs_of(*gl_, links, size_, tile_side, tile_pair_count_);
+    block_pairs_ = pairs_of(*gl_, links, size_, block_side, block_pair_count_);
     const int rows = std::max((link_count_ + link_width - 1) / link_width, 1);
     links.resize(static_cast<std::size_t>(rows * link_width));
     pulls_target_.reset();
@@ -215,13 +270,18 @@ void BloodGpu::find_seams(const Pass& pass) {
     pulls_target_.emplace(*gl_, *pulls_, "fall across seams");
 }
 
-void BloodGpu::mark_drops(const Pass& pass, const DropRange& range) const {
+void BloodGpu::mark_drops(const Pass& pass, const BloodMedium& medium, const DropRange& range,
+                          bool blockwise) const {
     const gl::Program& program = use(pass, Shader::mark_of_drops);
     bind(pass, program, "u_drops", drops());
+    pass.bind(program, "u_metric", "metric");
+    program.set("u_drop", medium.drop);
     program.set("u_first", static_cast<int>(range.first % capacity()));
-    program.set("u_tile_count", glm::ivec2(tiles_));
+    program.set("u_tile_count", glm::ivec2(blockwise ? blocks_ : tiles_));
     program.set("u_film_size", glm::vec2(static_cast<float>(size_)));
-    draw_into(pass, marks_target_[marks_now_], gl::max_blend_state);
+    program.set("u_blockwise", blockwise);
+    draw_into(pass, blockwise ? held_target_[marks_now_] : marks_target_[marks_now_],
+              blockwise ? held_mark_state : mark_state);
     pass.draw_generated(GL_POINTS, static_cast<int>(range.count), 1);
 }
 
@@ -230,37 +290,67 @@ void BloodGpu::mark_seams(const Pass& pass) const {
         return;
     }
     const gl::Program& program = use(pass, Shader::mark_of_seams);
-    bind(pass, program, "u_links", *links_);
+    bind(pass, program, "u_pairs", *tile_pairs_);
+    bind(pass, program, "u_marked", marks_[marks_now_]);
+    program.set("u_extent", 1.0F);
+    draw_into(pass, across_target_[marks_now_], mark_state);
+    pass.draw_generated(GL_POINTS, tile_pair_count_, 1);
+}
+
+void BloodGpu::plan(const Pass& pass, const BloodMedium& medium, const DropRange& alive) const {
+    if (alive.count > 0) {
+        mark_drops(pass, medium, alive, true);
+    }
+    if (link_count_ > 0) {
+        const gl::Program& program = use(pass, Shader::mark_of_seams);
+        bind(pass, program, "u_pairs", *block_pairs_);
+        bind(pass, program, "u_marked", held_[marks_now_]);
+        program.set("u_extent", beyond_extent);
+        draw_into(pass, beyond_target_, mark_state);
+        pass.draw_generated(GL_POINTS, block_pair_count_, 1);
+    }
+    const gl::Program& program = use(pass, Shader::plan);
     bind(pass, program, "u_tiles", marks_[marks_now_]);
-    program.set("u_film_size", glm::ivec2(size_));
-    draw_into(pass, across_target_[marks_now_], gl::max_blend_state);
-    pass.draw_generated(GL_POINTS, link_count_, 1);
+    bind(pass, program, "u_across", across_[marks_now_]);
+    bind(pass, program, "u_blocks", held_[marks_now_]);
+    bind(pass, program, "u_beyond", beyond_);
+    draw_into(pass, plan_target_[marks_now_], gl::overwrite_state);
+    pass.draw_fullscreen();
 }
 
 void BloodGpu::look_at_tiles(const Pass& pass, const BloodMedium& medium, const DropRange& alive, bool wake) {
     const std::size_t before = marks_now_;
-    const gl::Program& program = use(pass, Shader::scan);
-    bind(pass, program, "u_tiles", marks_[before]);
-    bind(pass, program, "u_across", across_[before]);
-    bind(pass, program, "u_film", film());
-    bind(pass, program, "u_film_before", film_[1 - film_now_]);
-    program.set("u_still", still_mm_s * medium.flow.z);
-    program.set("u_all", wake || !medium.tools.empty() || medium.flow.w > 0.0F);
+    const bool all = wake || !medium.tools.empty() || medium.flow.w > 0.0F;
+    const gl::Program& search = use(pass, Shader::search);
+    bind(pass, search, "u_plan", plan_[before]);
+    bind(pass, search, "u_blocks", held_[before]);
+    bind(pass, search, "u_film", film());
+    bind(pass, search, "u_film_before", film_[1 - film_now_]);
+    search.set("u_still", still_mm_s * medium.flow.z);
+    search.set("u_all", all);
+    draw_into(pass, held_target_[1 - before], gl::overwrite_state);
+    pass.draw_fullscreen();
+    const gl::Program& scan = use(pass, Shader::scan);
+    bind(pass, scan, "u_tiles", marks_[before]);
+    bind(pass, scan, "u_across", across_[before]);
+    bind(pass, scan, "u_blocks", held_[1 - before]);
+    scan.set("u_all", all);
     draw_into(pass, marks_target_[1 - before], gl::overwrite_state);
     pass.draw_fullscreen();
     marks_now_ = 1 - before;
     clear(pass, across_target_[marks_now_]);
+    clear(pass, beyond_target_);
     if (alive.count > 0) {
-        mark_drops(pass, alive);
+        mark_drops(pass, medium, alive, false);
     }
     mark_seams(pass);
+    plan(pass, medium, alive);
 
-    // A tile that is no longer stepped must be the same in both textures, which take turns.
+    // A block that is no longer stepped must be the same in both textures, which take turns.
     const gl::Program& copy = use(pass, Shader::settle);
-    bind(pass, copy, "u_tiles_before", marks_[before]);
-    bind(pass, copy, "u_across_before", across_[before]);
+    bind(pass, copy, "u_plan_before", plan_[before]);
     bind(pass, copy, "u_film", film());
-    draw_into(pass, film_target_[1 - film_now_], gl::overwrite_state);
+    draw_into(pass, film_target_[1 - film_now_], cover_state);
     cover_tiles(pass, copy);
 }
 
@@ -281,6 +371,7 @@ void BloodGpu::spawn(const Pass& pass, const BloodMedium& medium, std::span<cons
                      const DropRange& evicted) {
     const std::size_t batch = spawn_rows_.size();
     if (evicted.count > 0) {
+        mark_drops(pass, medium, evicted, true);
         // Into the texture that is read next: what is added to it is owed to the film in the next step. The
         // other one, which stands for the areas here, has the same.
         const gl::Texture& areas = film_[1 - film_now_];
@@ -322,7 +413,8 @@ void BloodGpu::spawn(const Pass& pass, const BloodMedium& medium, std::span<cons
                       counts ? gl::add_blend_state : gl::overwrite_state);
             pass.draw_generated(GL_POINTS, static_cast<int>(count), 1);
         }
-        mark_drops(pass, {static_cast<std::int64_t>(spawns[first].slot), static_cast<std::int64_t>(count)});
+        mark_drops(pass, medium,
+                   {static_cast<std::int64_t>(spawns[first].slot), static_cast<std::int64_t>(count)}, false);
     }
     mark_seams(pass);
 }
@@ -351,6 +443,7 @@ void BloodGpu::step(const Pass& pass, const BloodMedium& medium, const DropRange
     const bool tools = !medium.tools.empty();
     const std::size_t next = 1 - film_now_;
     if (alive.count > 0) {
+        plan(pass, medium, alive);
         const gl::Program& program = use(pass, tools ? Shader::move_tools : Shader::move);
         bind_place(pass, program);
         bind(pass, program, "u_drops", drops());
@@ -367,7 +460,7 @@ void BloodGpu::step(const Pass& pass, const BloodMedium& medium, const DropRange
     program.set("u_one", 1.0F);
     set_medium(program, medium);
     set_tools(pass, program, medium);
-    draw_into(pass, film_target_[next], gl::overwrite_state);
+    draw_into(pass, film_target_[next], cover_state);
     cover_tiles(pass, program);
     if (link_count_ > 0) {
         const gl::Program& links = use(pass, Shader::flow_links);

@@ -13,6 +13,7 @@
 #include "engine/gl/framebuffer.h"
 #include "engine/gl/pixel_transfer.h"
 #include "engine/gl/program.h"
+#include "engine/gl/raster_state.h"
 #include "engine/gl/texture.h"
 
 namespace viscera {
@@ -52,6 +53,9 @@ struct DropRange {
     std::int64_t count = 0;
 };
 
+/// Blocks are drawn as points as large as they are.
+inline constexpr gl::RasterState cover_state{.program_point_size = true};
+
 /// Film, drops and tiles on the GPU, and the passes that step them. All of it is bound to the size of the
 /// bake and to a number of drops. Every function draws into framebuffers of its own and leaves one of them
 /// bound.
@@ -78,7 +82,8 @@ class BloodGpu {
     /// Draws the drops' shapes for show(); false when there are none.
     bool draw_caps(const Pass& pass, const BloodMedium& medium, const DropRange& alive);
     [[nodiscard]] const gl::Texture& caps() const { return *caps_; }
-    /// Draws a quad over each tile that shows blood, with the program in use and into what is bound.
+    /// Draws over each block that shows blood, in cover_state, with the program in use and into what is
+    /// bound.
     void cover_visible(const Pass& pass, const gl::Program& program) const;
 
     /// Asks which tiles are to be stepped; the answer comes some frames later with the tag.
@@ -98,27 +103,39 @@ class BloodGpu {
     void deposit(const Pass& pass, const BloodMedium& medium, const DropRange& range,
                  const gl::Texture& source, bool whole, std::int64_t step) const;
     void mark_seams(const Pass& pass) const;
-    void mark_drops(const Pass& pass, const DropRange& range) const;
+    void mark_drops(const Pass& pass, const BloodMedium& medium, const DropRange& range,
+                    bool blockwise) const;
+    void plan(const Pass& pass, const BloodMedium& medium, const DropRange& alive) const;
     void draw_rows(const Pass& pass, const DropRange& range) const;
 
     const gl::Functions* gl_;
     int size_ = 0;
-    int tiles_ = 0;  ///< along each side
+    int tiles_ = 0;   ///< along each side
+    int blocks_ = 0;  ///< along each side
     std::array<gl::Texture, 2> film_;
     std::array<gl::Texture, 2> drops_;
     gl::Texture deposit_;
     std::array<gl::Texture, 2> marks_;   ///< of tiles: changed, visible
     std::array<gl::Texture, 2> across_;  ///< of tiles: beyond a seam from marked ones
+    std::array<gl::Texture, 2> held_;    ///< of blocks: holds blood, changed, shows blood
+    gl::Texture beyond_;                 ///< of blocks: beyond a seam from those that hold blood
+    std::array<gl::Texture, 2>
+        plan_;  ///< of blocks: to be stepped, to be shown; now and before the last look
     gl::Texture spawn_;
     gl::Texture ledger_;  ///< volume that each source has given [mm^3]
     std::optional<gl::Texture> links_;
     std::optional<gl::Texture> pulls_;
+    std::optional<gl::Texture> tile_pairs_;   ///< joined by seams
+    std::optional<gl::Texture> block_pairs_;  ///< joined by seams
     std::optional<gl::Texture> caps_;
     std::array<gl::Framebuffer, 2> film_target_;
     std::array<gl::Framebuffer, 2> drops_target_;  ///< with the deposit
     std::array<gl::Framebuffer, 2> drops_alone_;
     std::array<gl::Framebuffer, 2> marks_target_;
     std::array<gl::Framebuffer, 2> across_target_;
+    std::array<gl::Framebuffer, 2> held_target_;
+    gl::Framebuffer beyond_target_;
+    std::array<gl::Framebuffer, 2> plan_target_;
     gl::Framebuffer ledger_target_;
     std::optional<gl::Framebuffer> pulls_target_;
     std::optional<gl::Framebuffer> caps_target_;
@@ -126,6 +143,8 @@ class BloodGpu {
     std::size_t drops_now_ = 0;
     std::size_t marks_now_ = 0;
     int link_count_ = 0;
+    int tile_pair_count_ = 0;
+    int block_pair_count_ = 0;
     std::vector<DropSpawn> spawn_rows_;
     gl::ReadBack tile_answers_;
 };

@@ -55,6 +55,7 @@ struct BloodState {
     std::uint64_t looks = 0;         ///< at the tiles
     std::uint64_t disturbed_at = 0;  ///< the look before which answers are too old
     std::int64_t looked_at = 0;      ///< step of the last look
+    std::int64_t looked_run = 0;     ///< the same, counted as `steps_run`
     std::size_t tool_count = 0;
     DropRing ring;
     std::vector<DropMeter> meters;

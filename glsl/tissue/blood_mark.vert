@@ -1,39 +1,53 @@
 #version 330 core
-// Marks tiles by points: those in which drops are, or those across seams from marked ones.
+// Marks tiles and blocks by points: those in which drops are, or those across seams from marked ones.
 #ifdef SEAMS
-#include "tissue/blood_tiles.glsl"
-uniform sampler2D u_links;
-uniform ivec2 u_film_size;
+uniform sampler2D u_pairs;   // one side, other side: x, y each, of tiles or blocks that a seam joins
+uniform sampler2D u_marked;
+uniform float u_extent;      // of the mark
 #else
+#include "tissue/blood_drop.glsl"
 uniform sampler2D u_drops;
+uniform sampler2D u_metric;
 uniform int u_first;
 uniform ivec2 u_tile_count;
 uniform vec2 u_film_size;
-const int tile_side = 32;
+uniform bool u_blockwise;  // blocks that a drop reaches, not the tile that it is in
 #endif
 
 void main() {
     gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+    gl_PointSize = 1.0;
 #ifdef SEAMS
-    ivec2 links = textureSize(u_links, 0);
-    vec4 link = texelFetch(u_links, ivec2(gl_VertexID % links.x, gl_VertexID / links.x), 0);
-    ivec2 from = ivec2(int(link.x) % u_film_size.x, int(link.x) / u_film_size.x) / tile_side;
-    ivec2 to = ivec2(int(link.y) % u_film_size.x, int(link.y) / u_film_size.x) / tile_side;
-    ivec2 last = textureSize(u_tiles, 0) - 1;
+    ivec2 pairs = textureSize(u_pairs, 0);
+    vec4 pair = texelFetch(u_pairs, ivec2(gl_VertexID % pairs.x, gl_VertexID / pairs.x), 0);
+    ivec2 last = textureSize(u_marked, 0) - 1;
     float most = 0.0;
     for (int i = 0; i < 9; ++i) {
-        most = max(most, texelFetch(u_tiles, clamp(from + ivec2(i % 3 - 1, i / 3 - 1), ivec2(0), last), 0).r);
+        most = max(most, texelFetch(u_marked, clamp(ivec2(pair.xy) + ivec2(i % 3 - 1, i / 3 - 1), ivec2(0), last), 0).r);
     }
     if (most > 0.5) {
-        gl_Position = vec4(2.0 * (vec2(to) + 0.5) / vec2(last + 1) - 1.0, 0.0, 1.0);
+        gl_PointSize = u_extent;
+        gl_Position = vec4(2.0 * (pair.zw + 0.5) / vec2(last + 1) - 1.0, 0.0, 1.0);
     }
 #else
     ivec2 size = textureSize(u_drops, 0);
     int index = (u_first + gl_VertexID) % (size.x * size.y);
     vec4 drop = texelFetch(u_drops, ivec2(index % size.x, index / size.x), 0);
     if (drop.z > 0.0) {
-        vec2 tile = floor(drop.xy * u_film_size / float(tile_side));
-        gl_Position = vec4(2.0 * (tile + 0.5) / vec2(u_tile_count) - 1.0, 0.0, 1.0);
+        vec2 at = drop.xy * u_film_size;
+        vec2 low = floor(at / 32.0);
+        vec2 high = low;
+        if (u_blockwise) {
+            // Its outline, in which it leaves its trail, and a step of two texels.
+            vec4 metric = texelFetch(u_metric, ivec2(clamp(at, vec2(0.0), u_film_size - 1.0)), 0);
+            float sine = sqrt(max(1.0 - metric.z * metric.z, 0.0025));
+            vec2 extent = min(drop_radius(drop.z) / (max(metric.xy, vec2(1e-12)) * sine) + 3.0, vec2(24.0));
+            low = floor(max(at - extent, vec2(0.0)) / 8.0);
+            high = floor(min(at + extent, u_film_size - 0.5) / 8.0);
+        }
+        vec2 count = high - low + 1.0;
+        gl_PointSize = max(count.x, count.y);
+        gl_Position = vec4((low + high + 1.0) / vec2(u_tile_count) - 1.0, 0.0, 1.0);
     }
 #endif
 }

@@ -1,28 +1,25 @@
 #version 330 core
-#include "tissue/blood_tiles.glsl"
-// A quad for each tile; those that are not asked for shrink to nothing.
+#include "tissue/blood_plan.glsl"
+// A point as large as a block for each block; those that are not asked for lie outside. The last ones along a side that is no multiple
+// of a block's lie over their neighbours in part, which draws the same there.
 uniform vec2 u_size;  // of the target [texels]
 #ifdef SETTLED
-uniform sampler2D u_tiles_before;
-uniform sampler2D u_across_before;
+uniform sampler2D u_plan_before;
 #endif
 
 void main() {
-    ivec2 tiles = textureSize(u_tiles, 0);
-    ivec2 tile = ivec2(gl_InstanceID % tiles.x, gl_InstanceID / tiles.x);
+    ivec2 blocks = textureSize(u_plan, 0);
+    ivec2 block = ivec2(gl_VertexID % blocks.x, gl_VertexID / blocks.x);
+    vec2 plan = texelFetch(u_plan, block, 0).rg;
 #ifdef SETTLED
     // Stepped until now.
-    float most = 0.0;
-    for (int i = 0; i < 9; ++i) {
-        ivec2 at = clamp(tile + ivec2(i % 3 - 1, i / 3 - 1), ivec2(0), tiles - 1);
-        most = max(most, max(texelFetch(u_tiles_before, at, 0).r, texelFetch(u_across_before, at, 0).r));
-    }
-    bool drawn = most > 0.5;
+    bool drawn = plan.r < 0.5 && texelFetch(u_plan_before, block, 0).r > 0.5;
 #elif defined(VISIBLE)
-    bool drawn = marked(tile, true);
+    bool drawn = plan.g > 0.5;
 #else
-    bool drawn = marked(tile, false);
+    bool drawn = plan.r > 0.5;
 #endif
-    vec2 corner = vec2(tile + ivec2(gl_VertexID & 1, gl_VertexID >> 1)) * float(tile_side);
-    gl_Position = drawn ? vec4(2.0 * corner / u_size - 1.0, 0.0, 1.0) : vec4(2.0, 2.0, 2.0, 1.0);
+    vec2 centre = min((vec2(block) + 0.5) * float(block_side), u_size - 0.5 * float(block_side));
+    gl_PointSize = float(block_side);
+    gl_Position = drawn ? vec4(2.0 * centre / u_size - 1.0, 0.0, 1.0) : vec4(2.0, 2.0, 2.0, 1.0);
 }
