@@ -83,7 +83,7 @@ std::vector<Port> BloodEffect::ports() const {
          .doc = "Normal of the blood's surface: -x/z and -y/z are its slopes [mm/mm] along u and v.",
          .format = PixelFormat::rgba16f,
          .size = size,
-         .clear = {0.0F, 0.0F, 1.0F, 0.0F},
+         .clear = {0.0F, 0.0F, 1.0F, 1.0F},
          .optional = true}};
 }
 

@@ -232,7 +232,8 @@ void BloodGpu::take_surface(const Pass& pass, const BloodMedium& medium, bool em
             clear(pass, drops_alone_[i]);
             clear(pass, marks_target_[i], spill ? 1.0F : 0.0F);
             clear(pass, across_target_[i]);
-            clear(pass, held_target_[i], spill ? 1.0F : 0.0F);
+            draw_into(pass, held_target_[i], gl::overwrite_state);
+            held_target_[i].clear_colour(0, {spill ? 1.0F : 0.0F, 0.0F, 0.0F, 0.0F});
             clear(pass, plan_target_[i], spill ? 1.0F : 0.0F);
         }
         clear(pass, beyond_target_);
@@ -328,6 +329,7 @@ void BloodGpu::look_at_tiles(const Pass& pass, const BloodMedium& medium, const 
     bind(pass, search, "u_film_before", film_[1 - film_now_]);
     search.set("u_still", still_mm_s * medium.flow.z);
     search.set("u_all", all);
+    search.set("u_wake", wake);
     draw_into(pass, held_target_[1 - before], gl::overwrite_state);
     pass.draw_fullscreen();
     const gl::Program& scan = use(pass, Shader::scan);

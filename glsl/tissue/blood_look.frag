@@ -33,10 +33,13 @@ void main() {
     ivec2 last = textureSize(u_film, 0) - 1;
     ivec2 low = max(here - 1, ivec2(0));
     ivec2 high = min(here + 1, last);
-    float h = at(here).x;
+    vec2 centre = at(here);
+    float h = centre.x;
     vec2 lengths = max(texelFetch(u_metric, here, 0).xy, vec2(1e-12));
     vec2 slopes = vec2(slope(at(ivec2(low.x, here.y)), h, at(ivec2(high.x, here.y))),
                        slope(at(ivec2(here.x, low.y)), h, at(ivec2(here.x, high.y)))) / lengths;
+    // Beside charts there is no length to measure a slope by.
+    slopes = centre.y > 0.0 ? slopes : vec2(0.0);
     o_height = min(h, 60000.0);
     o_colour = vec4(u_deep + (1.0 - u_deep) * exp(-u_extinction * h), 1.0 - exp(-h / u_covering));
     o_normal = vec4(normalize(vec3(-clamp(u_bump * slopes, vec2(-100.0), vec2(100.0)), 1.0)), 1.0);

@@ -38,10 +38,10 @@ void main() {
         vec2 low = floor(at / 32.0);
         vec2 high = low;
         if (u_blockwise) {
-            // Its outline, in which it leaves its trail, and a step of two texels.
+            // Its outline, in which it leaves its trail. A block around it is drawn as well, which has room for the step's two texels.
             vec4 metric = texelFetch(u_metric, ivec2(clamp(at, vec2(0.0), u_film_size - 1.0)), 0);
             float sine = sqrt(max(1.0 - metric.z * metric.z, 0.0025));
-            vec2 extent = min(drop_radius(drop.z) / (max(metric.xy, vec2(1e-12)) * sine) + 3.0, vec2(24.0));
+            vec2 extent = min(drop_radius(drop.z) / (max(metric.xy, vec2(1e-12)) * sine) + 1.0, vec2(24.0));
             low = floor(max(at - extent, vec2(0.0)) / 8.0);
             high = floor(min(at + extent, u_film_size - 0.5) / 8.0);
         }

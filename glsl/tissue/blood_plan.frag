@@ -1,7 +1,7 @@
 #version 330 core
 #include "tissue/blood_tiles.glsl"
 // Which blocks are stepped and shown: those of marked tiles that have blood in reach.
-uniform sampler2D u_blocks;  // r: blood or a drop is there
+uniform sampler2D u_blocks;  // r: blood or a drop is there; a: no surface is
 uniform sampler2D u_beyond;  // r: the same, seen across seams
 layout(location = 0) out vec2 o_plan;
 
@@ -13,6 +13,6 @@ void main() {
         ivec2 at = clamp(block + ivec2(i % 3 - 1, i / 3 - 1), ivec2(0), last);
         reach = max(reach, max(texelFetch(u_blocks, at, 0).r, texelFetch(u_beyond, at, 0).r));
     }
-    ivec2 tile = block / 4;
-    o_plan = reach > 0.5 ? vec2(marked(tile, false) ? 1.0 : 0.0, marked(tile, true) ? 1.0 : 0.0) : vec2(0.0);
+    bool bare = texelFetch(u_blocks, block, 0).a > 0.5;
+    o_plan = reach > 0.5 && !bare ? vec2(marks(block / 4)) : vec2(0.0);
 }

@@ -8,7 +8,8 @@ layout(location = 0) out vec2 o_mark;
 void main() {
     ivec2 tile = ivec2(gl_FragCoord.xy);
     o_mark = vec2(0.0, texelFetch(u_tiles, tile, 0).g);
-    if (marked(tile, u_all)) {
+    bvec2 stepped_or_shown = marks(tile);
+    if (u_all ? stepped_or_shown.y : stepped_or_shown.x) {
         ivec2 last = textureSize(u_blocks, 0) - 1;
         vec2 most = vec2(0.0);
         for (int i = 0; i < 16; ++i) {

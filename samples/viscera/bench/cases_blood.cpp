@@ -9,16 +9,20 @@ constexpr double steps_per_s = 120.0;
 
 /// Blood on a tube that fills the texture, one step of the simulation per frame, beside a plain copy of a
 /// picture of the film's size.
-nlohmann::json blood_scene(Lab& lab, const nlohmann::json& wounds, int max_drops) {
+nlohmann::json blood_scene(Lab& lab, const nlohmann::json& wounds, int max_drops, bool film) {
     const int size = lab.options().width;
     const nlohmann::json mesh{{"file", "../meshes/tube.glb"}};
     SceneText scene(lab.empty_scene());
+    if (film) {
+        scene.target("tissue.blood_spill", "r32f")
+            .pass("spill", "bench.source", {{"amount", 0.3}}, {{"out", "tissue.blood_spill"}});
+    }
     scene.pass("bake", "tissue.bake", {{"mesh", mesh}, {"size", size}})
         .pass("gravity", "tissue.gravity", {{"size", size}})
         .pass("blood", "tissue.blood",
               {{"mesh", mesh},
                {"size", size},
-               {"state", "bench" + std::to_string(max_drops)},
+               {"state", "bench" + std::to_string(max_drops) + (film ? "film" : "")},
                {"liquid", {{"steps_per_s", steps_per_s}, {"max_drops", max_drops}}},
                {"wounds", wounds}})
         .target("picture", "rgba32f")
@@ -46,8 +50,9 @@ nlohmann::json wounds_along(int count, double rate_mm3_s) {
 void run_blood(Lab& lab) {
     const int size = lab.options().width;
     const std::string at = " at " + std::to_string(size) + "^2";
-    const auto measure = [&](const std::string& name, const nlohmann::json& wounds, int max_drops, int warm) {
-        Stage stage(lab, blood_scene(lab, wounds, max_drops),
+    const auto measure = [&](const std::string& name, const nlohmann::json& wounds, int max_drops, int warm,
+                             bool film = false) {
+        Stage stage(lab, blood_scene(lab, wounds, max_drops, film),
                     {.time_s = 0.0, .step_s = 1.0 / steps_per_s, .warm = warm});
         stage.run();
         lab.add({.group = "blood",
@@ -59,6 +64,7 @@ void run_blood(Lab& lab) {
     };
     measure("a step, 1 wound after 0.5 s", wounds_along(1, 30.0), 16384, 60);
     measure("a step, 4 wounds after 1 s", wounds_along(4, 30.0), 16384, 120);
+    measure("a step, film on all of the surface", nlohmann::json::array(), 16384, 10, true);
     if (lab.hardware()) {
         // Each wound gives 9 drops a step at most; more blood makes them larger.
         measure("a step, 100000 drops", wounds_along(64, 270.0), 102400, 360);
