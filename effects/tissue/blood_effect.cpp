@@ -13,7 +13,8 @@
 namespace viscera::tissue {
 namespace {
 
-// Steps between two looks at which tiles are at rest: in as many steps nothing leaves a tile's neighbours.
+// Steps between two looks at which tiles are at rest: in as many steps no film leaves the blocks of 8 texels
+// around its own.
 constexpr std::int64_t steps_per_look = 8;
 // A gap between frames of more than this is not made up for.
 constexpr double longest_gap_s = 0.5;
