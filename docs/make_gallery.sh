@@ -12,11 +12,11 @@ printf '# Gallery\n\nMade by `docs/make_gallery.sh`; under each picture the comm
 picture() {
     local name=$1 target=$2 caption=$3
     shift 3
-    "$viscera" render "$@" --resolution 640x640 -o "$out" --dump "$target" --png "$target" >/dev/null 2>"$out/log" || { cat "$out/log" >&2; exit 1; }
+    "$viscera" render "$@" --resolution "${size:-640x640}" -o "$out" --dump "$target" --png "$target" >/dev/null 2>"$out/log" || { cat "$out/log" >&2; exit 1; }
     mv "$out/0000.$target.png" "docs/images/$name.png"
     {
         printf '\n## %s\n\n![%s](images/%s.png)\n\n```sh\nviscera render' "$caption" "$caption" "$name"
-        printf ' %q' "$@" --resolution 640x640 --dump "$target" --png "$target"
+        printf ' %q' "$@" --resolution "${size:-640x640}" --dump "$target" --png "$target"
         printf '\n```\n'
     } >>$page
 }
@@ -46,3 +46,5 @@ picture organ final 'Liver, gallbladder and omentum through a laparoscope' asset
 picture organ_tissue final 'Bruise, coagulated spots, blood, and a membrane in front' assets/scenes/organ_tissue.json --time 3
 picture mixed volume.colour 'An opened head: a quarter of the rays, under a mesh in full resolution' assets/scenes/mixed.json
 picture stereo volume.colour 'The same for two eyes, side by side' assets/scenes/stereo.json
+size=960x540 picture bleeding final 'Laparoscopy: a cut bleeds, an artery in it spurts, blood runs down and gathers' assets/scenes/laparoscopy.json --time 3
+size=960x540 picture haemostasis final 'Four seconds later: a hook coagulates along the cut, and the bleeding stops' assets/scenes/laparoscopy.json --time 7
