@@ -113,9 +113,10 @@ json scene_of(const Lab& lab, json parameters, double scale) {
     return scene;
 }
 
+/// Absorption shown bright: 0 beside the shape, whether a ray meets the box there or not.
 json xray(const char* filter, double step, bool skip = true) {
     return {{"function", "xray"},
-            {"xray", {{"water_attenuation_per_mm", 0.01}, {"negative", false}}},
+            {"xray", {{"water_attenuation_per_mm", 0.01}, {"negative", true}}},
             {"sampling", {{"filter", filter}, {"step", step}, {"skip", skip}}}};
 }
 
@@ -124,6 +125,16 @@ json wall_shown(bool skip) {
     parameters["transfer_function"]["points"] = {{{"value", 150}, {"opacity", 0.0}},
                                                  {{"value", 220}, {"opacity", 0.3}}};
     return parameters;
+}
+
+/// Without alpha, which only tells whether a ray met the box.
+Image colours(Image picture) {
+    for (int y = 0; y < picture.height; ++y) {
+        for (int x = 0; x < picture.width; ++x) {
+            picture.set(x, y, 3, 0.0F);
+        }
+    }
+    return picture;
 }
 
 struct Shot {
@@ -138,7 +149,7 @@ Shot shoot(Lab& lab, const LiveVolume& volume, const json& scene, int repeats) {
         frame.volumes = std::span(&given, 1);
         nudge(frame);
     });
-    return {stage.whole(), stage.read("volume.colour")};
+    return {stage.whole(), colours(stage.read("volume.colour"))};
 }
 
 }  // namespace
