@@ -3,6 +3,7 @@
 #include "engine/gl/functions.h"
 #include "engine/gl/texture.h"
 #include "tests/volume/mixed_scene.h"
+#include "tests/volume/sector_stage.h"
 
 namespace viscera::test {
 namespace {
@@ -55,6 +56,17 @@ TEST_F(ComputePath, WithAndWithoutSkipping) {
         nlohmann::json p = parameters();
         p["sampling"] = {{"skip", skip}};
         expect_same(mixed_scene(nlohmann::json::array(), p, camera_at({250, -380, 120})));
+    }
+}
+
+TEST_F(ComputePath, CylindersAndSpheres) {
+    for (const NamedShape& named : some_shapes()) {
+        SCOPED_TRACE(named.name);
+        volume_.replace(sector_vessels(named.shape, {12, 18, 10}));
+        const glm::dvec3 centre = sector_centre(volume_.volume().grid);
+        nlohmann::json camera = camera_at(centre + glm::dvec3(120.0, -180.0, 90.0));
+        camera["target_mm"] = {centre.x, centre.y, centre.z};
+        expect_same(mixed_scene(nlohmann::json::array(), parameters(), camera), 1e-6, 50);
     }
 }
 
