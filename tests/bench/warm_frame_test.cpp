@@ -133,6 +133,20 @@ TEST_P(WarmFrameTest, AMovedOrganBehindAMembraneAllocatesNothing) {
     }
 }
 
+TEST_P(WarmFrameTest, AnOrganThatBleedsWhileAHookMovesAllocatesNothing) {
+    const auto scenes = std::filesystem::path(VISCERA_SOURCE_DIR) / "assets" / "scenes";
+    const std::vector<SceneOverride> small{{"/resolution", {64, 48}}};
+    renderer().set_scene(load_scene(scenes / "laparoscopy.json", small));
+    double time_s = 5.5;
+    for (int i = 0; i < 30; ++i) {
+        (void)allocations(time_s += 0.02);
+    }
+    for (int i = 0; i < 5; ++i) {
+        EXPECT_EQ(allocations(time_s += 0.02), 0U) << "at " << time_s << " s";
+        EXPECT_GE(drawn(), 5U) << "energy, blood, the organ, the hook and the lens";
+    }
+}
+
 TEST_P(WarmFrameTest, TwoEyesInMixedResolutionAllocateNothing) {
     const LiveVolume head(bytes_of_noise(24, 4.0));
     const std::array<HostVolume, 1> given{HostVolume{"head", &head}};
