@@ -45,7 +45,7 @@ struct BakeEffect::Gpu {
 
 void BakeParams::visit(ParamVisitor& v) {
     v.field({.name = "mesh", .doc = "The surface.", .required = true}, mesh);
-    v.field({.name = "size", .doc = "Texels along each side.", .unit = "px", .min = 16, .max = 8192}, size);
+    visit_size(v, size);
 }
 
 BakeEffect::BakeEffect() {
@@ -62,7 +62,7 @@ BakeEffect::BakeEffect() {
 BakeEffect::~BakeEffect() = default;
 
 std::vector<Port> BakeEffect::ports() const {
-    const SizeRule size{.width = params_.size, .height = params_.size};
+    const SizeRule size = square(params_.size);
     return {{.name = "position",
              .access = Access::write,
              .target = "tissue.position",
@@ -100,44 +100,43 @@ std::vector<Port> BakeEffect::ports() const {
 }
 
 Work BakeEffect::prepare(Prepare& prepare) {
-    if (!mesh_ || parameters_key_ != prepare.parameters_key()) {
+    const glm::ivec2 size = prepare.size("position");
+    if (!surface_ || surface_->size() != size.x || parameters_key_ != prepare.parameters_key()) {
         parameters_key_ = prepare.parameters_key();
-        mesh_ = SurfaceMesh::load(prepare.assets(), params_.mesh);
-        to_world_ = placement_matrix(params_.mesh.placement, mesh_->centre());
+        surface_ = BakedSurface::load(prepare.assets(), params_.mesh, size.x);
         map_.reset();
     }
-    mesh_->move(prepare.frame().values, params_.mesh.host_positions, prepare.log());
-    if (mesh_->data().indices.empty()) {
+    surface_->move(prepare);
+    if (surface_->mesh().data().indices.empty()) {
         return Work::idle("the mesh has no triangles");
     }
-    if (!invertible(to_world_)) {
+    if (!invertible(surface_->to_world())) {
         prepare.log().fault("tissue.singular", "the mesh's placement is singular; nothing is baked");
         return Work::idle("the mesh's placement is singular");
     }
-    const glm::ivec2 size = prepare.size("position");
     if (size.x != size.y) {
         prepare.log().fault("tissue.no_square", "a bake's targets are no squares; nothing is baked");
         return Work::idle("its targets are no squares");
     }
-    if (!map_ || map_->size != size.x) {
+    if (!map_) {
         find_map(prepare);
     }
     wanted_ = 0;
     for (std::size_t i = 0; i < features.size(); ++i) {
         wanted_ |= (prepare.has(features[i].port) ? 1U : 0U) << i;
     }
-    content_key_ = Hash().add(parameters_key_).add(mesh_->shape_key()).value();
+    content_key_ = Hash().add(parameters_key_).add(surface_->mesh().shape_key()).value();
     return Work::all(content_key_);
 }
 
 /// From what other passes or an earlier run have found, or anew.
 void BakeEffect::find_map(Prepare& prepare) {
-    const int size = prepare.size("position").x;
     const std::string file = params_.mesh.file.path.string();
-    if (mesh_->data().triangle_count() >= most_counted || mesh_->data().positions.size() >= most_counted) {
+    const MeshData& mesh = surface_->mesh().data();
+    if (mesh.triangle_count() >= most_counted || mesh.positions.size() >= most_counted) {
         throw Error(ErrorCode::limit, file, "has more triangles or vertices than can be baked (16,777,216)");
     }
-    map_ = shared_texel_map(prepare.assets(), *mesh_, size, file);
+    map_ = surface_->map(prepare.assets());
     const auto say = [&](std::string_view key, std::uint64_t count, const std::string& what) {
         if (count > 0) {
             prepare.log().fault(key, file + ": " + std::to_string(count) + " " + what, count);
@@ -155,11 +154,12 @@ void BakeEffect::find_map(Prepare& prepare) {
 }
 
 void BakeEffect::fill_vertices() {
-    const MeshData& mesh = mesh_->data();
+    const MeshData& mesh = surface_->mesh().data();
+    const glm::dmat4& to_world = surface_->to_world();
     // A covector: turned by the inverse transpose, so that it stays on its side of a mirrored surface.
-    const glm::dmat3 normal_to_world = glm::transpose(glm::inverse(glm::dmat3(to_world_)));
+    const glm::dmat3 normal_to_world = glm::transpose(glm::inverse(glm::dmat3(to_world)));
     for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
-        const glm::vec3 place(to_world_ * glm::dvec4(mesh.positions[v], 1.0));
+        const glm::vec3 place(to_world * glm::dvec4(mesh.positions[v], 1.0));
         const glm::dvec3 normal = normal_to_world * glm::dvec3(mesh.normals[v]);
         const double length = glm::length(normal);
         vertices_[2 * v] = {place, mesh.uvs[v].x};
@@ -172,9 +172,9 @@ void BakeEffect::upload(const Pass& pass) {
     if (!gpu_) {
         gpu_ = std::make_unique<Gpu>();
     }
-    const MeshData& mesh = mesh_->data();
-    if (gpu_->mesh_key != mesh_->key()) {
-        gpu_->mesh_key = mesh_->key();
+    const MeshData& mesh = surface_->mesh().data();
+    if (gpu_->mesh_key != surface_->mesh().key()) {
+        gpu_->mesh_key = surface_->mesh().key();
         gpu_->content_key = 0;
         const std::size_t vertex_rows = rows_for(2 * mesh.positions.size());
         const std::size_t triangle_rows = rows_for(mesh.triangle_count());

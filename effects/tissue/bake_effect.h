@@ -3,9 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "effects/tissue/texel_map.h"
-#include "engine/runtime/effect.h"
-#include "engine/runtime/surface_mesh.h"
+#include "effects/tissue/baked_surface.h"
 
 namespace viscera::tissue {
 
@@ -38,9 +36,8 @@ class BakeEffect final : public Effect {
     BakeParams params_;
     std::vector<ProgramDesc> programs_;
     std::uint64_t parameters_key_ = 0;
-    std::shared_ptr<SurfaceMesh> mesh_;
+    std::shared_ptr<BakedSurface> surface_;
     std::shared_ptr<const TexelMap> map_;
-    glm::dmat4 to_world_{1.0};
     std::uint64_t content_key_ = 0;
     std::uint32_t wanted_ = 0;         ///< bit i: feature i is read by somebody
     std::vector<glm::vec4> vertices_;  ///< two per vertex: world position and u, world normal and v

@@ -69,12 +69,7 @@ void ToolParams::visit(ParamVisitor& v) {
 
 void BipolarParams::visit(ParamVisitor& v) {
     v.field({.name = "mesh", .doc = "The mesh of the bake.", .required = true}, mesh);
-    v.field({.name = "size",
-             .doc = "Texels along each side, as the bake has them.",
-             .unit = "px",
-             .min = 16,
-             .max = 8192},
-            size);
+    visit_size(v, size);
     v.field({.name = "held",
              .doc = "Vertices that the tool holds, unless the host says so by `tissue.held`.",
              .min = 0.0},
@@ -96,46 +91,30 @@ BipolarEffect::BipolarEffect() {
 BipolarEffect::~BipolarEffect() = default;
 
 std::vector<Port> BipolarEffect::ports() const {
-    const SizeRule size{.width = params_.size, .height = params_.size};
     return {{.name = "energy",
              .access = Access::write,
              .target = "tissue.energy",
              .doc = "Energy with what the tool adds.",
              .format = PixelFormat::r32f,
-             .size = size,
+             .size = square(params_.size),
              .passthrough = "before",
              .overwrites = true},
             {.name = "before",
              .access = Access::read,
              .target = "tissue.energy",
              .doc = "Energy without it: tissue.coagulate, which keeps the state, comes before this."},
-            {.name = "position",
-             .access = Access::read,
-             .target = "tissue.position",
-             .doc = "Place of each texel in the world [mm]."}};
+            read_bake("position")};
 }
 
 void BipolarEffect::find_surface(Prepare& prepare) {
-    const int size = prepare.size("energy").x;
     if (parameters_key_ != prepare.parameters_key()) {
         parameters_key_ = prepare.parameters_key();
-        mesh_ = SurfaceMesh::load(prepare.assets(), params_.mesh);
-        to_world_ = placement_matrix(params_.mesh.placement, mesh_->centre());
-        triangles_ =
-            std::make_unique<HeldTriangles>(mesh_->data(), mesh_->places(), params_.max_uv_perimeter);
-        map_ = shared_texel_map(prepare.assets(), *mesh_, size, params_.mesh.file.path.string());
-        tiles_ = std::make_unique<TileTree>(map_);
-        placed_shape_ = 0;
+        surface_ = BakedSurface::load(prepare.assets(), params_.mesh, prepare.size("energy").x);
+        map_ = surface_->map(prepare.assets());
+        const SurfaceMesh& mesh = surface_->mesh();
+        triangles_ = std::make_unique<HeldTriangles>(mesh.data(), mesh.places(), params_.max_uv_perimeter);
     }
-    mesh_->move(prepare.frame().values, params_.mesh.host_positions, prepare.log());
-    if (placed_shape_ != mesh_->shape_key()) {
-        placed_shape_ = mesh_->shape_key();
-        world_.resize(mesh_->data().positions.size());
-        std::ranges::transform(mesh_->data().positions, world_.begin(), [this](const glm::vec3& p) {
-            return glm::vec3(to_world_ * glm::dvec4(p, 1.0));
-        });
-        tiles_->place(world_, mesh_->data().indices);
-    }
+    surface_->move(prepare);
 }
 
 std::span<const float> BipolarEffect::held_numbers(const HostValues* values) {
@@ -174,11 +153,7 @@ Work BipolarEffect::prepare(Prepare& prepare) {
     if (!prepare.has("position")) {
         return Work::idle("there is no surface");
     }
-    if (prepare.size("position") != prepare.size("energy")) {
-        throw Error(ErrorCode::scene, "tissue.coagulate_bipolar",
-                    "the energy is " + std::to_string(prepare.size("energy").x) +
-                        " texels wide, the position map is " + std::to_string(prepare.size("position").x));
-    }
+    check_size(prepare, "energy");
     if (!find_tool(prepare)) {
         return Work::idle("the tool is nowhere");
     }
@@ -193,13 +168,14 @@ Work BipolarEffect::prepare(Prepare& prepare) {
     const double stretch =
         std::sqrt(glm::dot(pose_[0], pose_[0]) + glm::dot(pose_[1], pose_[1]) + glm::dot(pose_[2], pose_[2]));
     const glm::dvec3 centre(pose_[3]);
+    TileTree& tiles = surface_->tiles(prepare.assets());
     found_.clear();
-    tiles_->near(centre, centre, stretch * radius_of(params_.tool), found_);
+    tiles.near(centre, centre, stretch * radius_of(params_.tool), found_);
     PixelRegion region;
     constexpr int t = TileTree::tile_texels;
     for (const std::uint32_t tile : found_) {
-        if (tiles_->holds_any(tile, triangles_->held())) {
-            const int side = tiles_->tiles_per_side();
+        if (tiles.holds_any(tile, triangles_->held())) {
+            const int side = tiles.tiles_per_side();
             region.add({static_cast<int>(tile) % side * t, static_cast<int>(tile) / side * t, t, t});
         }
     }

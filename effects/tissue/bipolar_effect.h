@@ -3,10 +3,8 @@
 #include <memory>
 #include <vector>
 
+#include "effects/tissue/baked_surface.h"
 #include "effects/tissue/held_triangles.h"
-#include "effects/tissue/tile_tree.h"
-#include "engine/runtime/effect.h"
-#include "engine/runtime/surface_mesh.h"
 
 namespace viscera::tissue {
 
@@ -54,12 +52,8 @@ class BipolarEffect final : public Effect {
     BipolarParams params_;
     std::vector<ProgramDesc> programs_;
     std::uint64_t parameters_key_ = 0;
-    std::shared_ptr<SurfaceMesh> mesh_;
-    glm::dmat4 to_world_{1.0};
+    std::shared_ptr<BakedSurface> surface_;
     std::shared_ptr<const TexelMap> map_;
-    std::unique_ptr<TileTree> tiles_;
-    std::uint64_t placed_shape_ = 0;
-    std::vector<glm::vec3> world_;  ///< the mesh's vertices [mm]
     std::unique_ptr<HeldTriangles> triangles_;
     std::vector<float> held_;  ///< numbers of the parameters
     glm::dmat4 pose_{1.0};

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "effects/tissue/baked_surface.h"
 #include "effects/tissue/surface_search.h"
 #include "engine/core/error.h"
 #include "engine/core/hash.h"
@@ -55,10 +56,10 @@ void BloodEffect::validate() const {
 std::vector<Port> BloodEffect::ports() const {
     const SizeRule size{.width = params_.size, .height = params_.size};
     return {
-        read("position", "tissue.position", "Of the bake."),
-        read("normal", "tissue.normal", "Of the bake."),
-        read("metric", "tissue.metric", "Of the bake."),
-        read("seam", "tissue.seam", "Of the bake."),
+        read_bake("position"),
+        read_bake("normal"),
+        read_bake("metric"),
+        read_bake("seam"),
         read("gravity", "tissue.gravity", "Of tissue.gravity."),
         read("flow_right", "tissue.flow_right", "Of tissue.gravity."),
         read("flow_top", "tissue.flow_top", "Of tissue.gravity."),

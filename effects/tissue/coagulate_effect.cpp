@@ -52,12 +52,7 @@ void CoagulateParams::visit(ParamVisitor& v) {
          .doc = "The mesh of the bake, by which a pass finds the part of the texture that a contact reaches; "
                 "without it all is drawn."},
         mesh);
-    v.field({.name = "size",
-             .doc = "Texels along each side, as the bake has them.",
-             .unit = "px",
-             .min = 16,
-             .max = 8192},
-            size);
+    visit_size(v, size);
     v.field({.name = "metric", .doc = "Where distances are measured: in the world [mm] or in the texture."},
             metric);
     v.field({.name = "contacts", .doc = "Contacts besides those of the host values `tissue.contacts`."},
@@ -108,13 +103,12 @@ void CoagulateEffect::validate() const {
 }
 
 std::vector<Port> CoagulateEffect::ports() const {
-    const SizeRule size{.width = params_.size, .height = params_.size};
     std::vector<Port> ports{{.name = "energy",
                              .access = Access::write,
                              .target = "tissue.energy",
                              .doc = "Energy taken up: above 0 coagulated, below 0 dissected.",
                              .format = PixelFormat::r32f,
-                             .size = size,
+                             .size = square(params_.size),
                              .passthrough = "last",
                              .overwrites = true},
                             {.name = "last",
@@ -122,45 +116,28 @@ std::vector<Port> CoagulateEffect::ports() const {
                              .target = "tissue.energy",
                              .doc = "The energy after the last frame."}};
     if (params_.metric == Metric::world) {
-        ports.push_back({.name = "position",
-                         .access = Access::read,
-                         .target = "tissue.position",
-                         .doc = "Place of each texel in the world [mm]."});
+        ports.push_back(read_bake("position"));
     }
     return ports;
 }
 
-/// Brings the tiles up to date. False: there are none for want of a mesh.
-bool CoagulateEffect::find_tiles(Prepare& prepare) {
+/// The tiles as the surface lies now; null: there are none for want of a mesh.
+TileTree* CoagulateEffect::find_tiles(Prepare& prepare) {
     const int size = prepare.size("energy").x;
     if (params_.metric == Metric::uv) {
-        if (!tiles_ || tiles_->size() != size) {
-            tiles_ = std::make_unique<TileTree>(size);
+        if (!uv_tiles_ || uv_tiles_->size() != size) {
+            uv_tiles_ = std::make_unique<TileTree>(size);
         }
-        return true;
+        return uv_tiles_.get();
     }
     if (!params_.mesh) {
-        return false;
+        return nullptr;
     }
-    if (!mesh_) {
-        mesh_ = SurfaceMesh::load(prepare.assets(), *params_.mesh);
-        to_world_ = placement_matrix(params_.mesh->placement, mesh_->centre());
+    if (!surface_ || surface_->size() != size) {
+        surface_ = BakedSurface::load(prepare.assets(), *params_.mesh, size);
     }
-    mesh_->move(prepare.frame().values, params_.mesh->host_positions, prepare.log());
-    if (!tiles_ || tiles_->size() != size) {
-        tiles_ = std::make_unique<TileTree>(
-            shared_texel_map(prepare.assets(), *mesh_, size, params_.mesh->file.path.string()));
-        placed_shape_ = 0;
-    }
-    if (placed_shape_ != mesh_->shape_key()) {
-        placed_shape_ = mesh_->shape_key();
-        world_.resize(mesh_->data().positions.size());
-        std::ranges::transform(mesh_->data().positions, world_.begin(), [this](const glm::vec3& p) {
-            return glm::vec3(to_world_ * glm::dvec4(p, 1.0));
-        });
-        tiles_->place(world_, mesh_->data().indices);
-    }
-    return true;
+    surface_->move(prepare);
+    return &surface_->tiles(prepare.assets());
 }
 
 void CoagulateEffect::find_limit(const HostValues* values) {
@@ -179,14 +156,11 @@ Work CoagulateEffect::prepare(Prepare& prepare) {
     const double time = prepare.frame().time_s;
     if (parameters_key_ != prepare.parameters_key()) {
         parameters_key_ = prepare.parameters_key();
-        mesh_.reset();
-        tiles_.reset();
+        surface_.reset();
     }
     const int size = prepare.size("energy").x;
-    if (params_.metric == Metric::world && prepare.size("position") != prepare.size("energy")) {
-        throw Error(ErrorCode::scene, "tissue.coagulate",
-                    "the energy is " + std::to_string(size) + " texels wide, the position map is " +
-                        std::to_string(prepare.size("position").x));
+    if (params_.metric == Metric::world) {
+        check_size(prepare, "energy");
     }
     values_ = prepare.frame().values;
     time_s_ = time;
@@ -236,8 +210,8 @@ Work CoagulateEffect::prepare(Prepare& prepare) {
         gpu_->saved.reset();
     }
     pack_contacts();
-    const bool tiled = find_tiles(prepare);
-    if (!tiled) {
+    TileTree* const tiles = find_tiles(prepare);
+    if (tiles == nullptr) {
         // One tile that is the whole texture, with every contact.
         list_.clear();
         for (std::size_t i = 0; i < contacts_.contacts().size(); i += 4) {
@@ -254,7 +228,7 @@ Work CoagulateEffect::prepare(Prepare& prepare) {
         return Work::all(0);
     }
     PixelRegion region;
-    find_region(region);
+    find_region(*tiles, region);
     if (loads_) {
         region = PixelRegion(PixelRect{0, 0, size, size});
     }
@@ -264,13 +238,13 @@ Work CoagulateEffect::prepare(Prepare& prepare) {
         contacts_.keep_places(values_);
         return Work::idle("no contact reaches the tissue");
     }
-    list_tiles(region);
+    list_tiles(tiles->tiles_per_side(), region);
     return loads_ ? Work::all(0) : Work::update(region, "only what contacts reach", 0);
 }
 
 /// Pairs of a tile and a contact that may reach it, by contact, and the rectangles around the tiles.
-void CoagulateEffect::find_region(PixelRegion& region) {
-    const int side = tiles_->tiles_per_side();
+void CoagulateEffect::find_region(TileTree& tiles, PixelRegion& region) {
+    const int side = tiles.tiles_per_side();
     next_.assign(static_cast<std::size_t>(side * side), 0);
     pair_tiles_.clear();
     pair_contacts_.clear();
@@ -284,7 +258,7 @@ void CoagulateEffect::find_region(PixelRegion& region) {
             continue;
         }
         found_.clear();
-        tiles_->near(contact.from, contact.to, wider * contact.reach, found_);
+        tiles.near(contact.from, contact.to, wider * contact.reach, found_);
         for (const std::uint32_t tile : found_) {
             pair_tiles_.push_back(tile);
             pair_contacts_.push_back(static_cast<std::uint32_t>(c));
@@ -301,14 +275,13 @@ void CoagulateEffect::find_region(PixelRegion& region) {
             region.add({begin * t, y * t, (x - begin) * t, t});
         }
     }
-    region = region.confined(tiles_->size(), tiles_->size());
+    region = region.confined(tiles.size(), tiles.size());
 }
 
 /// Every tile of the region, with its contacts in the order of all contacts, so that sums come out the same
 /// however the texture is divided.
-void CoagulateEffect::list_tiles(const PixelRegion& region) {
+void CoagulateEffect::list_tiles(int side, const PixelRegion& region) {
     constexpr int t = TileTree::tile_texels;
-    const int side = tiles_->tiles_per_side();
     list_.assign((pair_tiles_.size() + 3) / 4, glm::vec4(0.0F));
     std::uint32_t begin = 0;
     drawn_tiles_.clear();

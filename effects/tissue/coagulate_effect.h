@@ -4,11 +4,9 @@
 #include <optional>
 #include <vector>
 
+#include "effects/tissue/baked_surface.h"
 #include "effects/tissue/contact.h"
 #include "effects/tissue/saved_energy.h"
-#include "effects/tissue/tile_tree.h"
-#include "engine/runtime/effect.h"
-#include "engine/runtime/surface_mesh.h"
 
 namespace viscera::tissue {
 
@@ -54,20 +52,17 @@ class CoagulateEffect final : public Effect {
 
   private:
     struct Gpu;
-    bool find_tiles(Prepare& prepare);
-    void find_region(PixelRegion& region);
-    void list_tiles(const PixelRegion& region);
+    [[nodiscard]] TileTree* find_tiles(Prepare& prepare);
+    void find_region(TileTree& tiles, PixelRegion& region);
+    void list_tiles(int side, const PixelRegion& region);
     void pack_contacts();
     void find_limit(const HostValues* values);
 
     CoagulateParams params_;
     std::vector<ProgramDesc> programs_;
     std::uint64_t parameters_key_ = 0;
-    std::shared_ptr<SurfaceMesh> mesh_;
-    glm::dmat4 to_world_{1.0};
-    std::uint64_t placed_shape_ = 0;
-    std::vector<glm::vec3> world_;  ///< the mesh's vertices [mm]
-    std::unique_ptr<TileTree> tiles_;
+    std::shared_ptr<BakedSurface> surface_;
+    std::unique_ptr<TileTree> uv_tiles_;  ///< with metric uv, which needs no surface
 
     std::optional<double> last_time_s_;  ///< of the last frame that was drawn, or had nothing to draw
     bool began_ = false;                 ///< the state has been begun; false when it must be begun anew

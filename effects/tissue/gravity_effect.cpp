@@ -1,6 +1,6 @@
 #include "effects/tissue/gravity_effect.h"
 
-#include "engine/core/error.h"
+#include "effects/tissue/baked_surface.h"
 #include "engine/core/hash.h"
 #include "engine/runtime/pass.h"
 
@@ -8,12 +8,7 @@ namespace viscera::tissue {
 
 void GravityMapParams::visit(ParamVisitor& v) {
     gravity.visit(v);
-    v.field({.name = "size",
-             .doc = "Texels along each side, as the bake's.",
-             .unit = "px",
-             .min = 16,
-             .max = 8192},
-            size);
+    visit_size(v, size);
     v.field({.name = "open_edges",
              .doc = "A film runs off where the surface ends; otherwise it stands there as at a wall."},
             open_edges);
@@ -22,10 +17,7 @@ void GravityMapParams::visit(ParamVisitor& v) {
 GravityEffect::GravityEffect() : programs_{{"common/fullscreen.vert", "tissue/gravity.frag", {}}} {}
 
 std::vector<Port> GravityEffect::ports() const {
-    const SizeRule size{.width = params_.size, .height = params_.size};
-    const auto read = [](const char* name, const char* target, const char* doc) {
-        return Port{.name = name, .access = Access::read, .target = target, .doc = doc};
-    };
+    const SizeRule size = square(params_.size);
     const auto write = [&](const char* name, const char* target, const char* doc, bool optional) {
         return Port{.name = name,
                     .access = Access::write,
@@ -37,10 +29,10 @@ std::vector<Port> GravityEffect::ports() const {
                     .overwrites = true};
     };
     return {
-        read("position", "tissue.position", "Of the bake."),
-        read("normal", "tissue.normal", "Of the bake."),
-        read("metric", "tissue.metric", "Of the bake."),
-        read("seam", "tissue.seam", "Of the bake."),
+        read_bake("position"),
+        read_bake("normal"),
+        read_bake("metric"),
+        read_bake("seam"),
         write("gravity", "tissue.gravity",
               "Direction downhill in UV, share of gravity along the surface, UV per mm that way.", false),
         write("flow_right", "tissue.flow_right",
@@ -54,9 +46,7 @@ Work GravityEffect::prepare(Prepare& prepare) {
     if (!prepare.has("position")) {
         return Work::idle("there is no surface");
     }
-    if (prepare.size("position") != prepare.size("gravity")) {
-        throw Error(ErrorCode::scene, "/size", "differs from the size of the bake that the pass reads");
-    }
+    check_size(prepare, "gravity");
     gravity_ = gravity_of(params_.gravity, prepare.frame().values, prepare.log());
     return Work::all(Hash().add(prepare.parameters_key()).add(gravity_.down).add(gravity_.strength).value());
 }
