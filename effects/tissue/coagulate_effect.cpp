@@ -20,6 +20,8 @@ constexpr std::array<std::string_view, 2> metric_names{"world", "uv"};
 constexpr std::size_t in_uv = 1;
 constexpr std::size_t long_ways = 2;
 constexpr std::size_t in_steps = 4;
+// The program for tiles that no contact reaches.
+constexpr std::size_t untouched = 8;
 
 // No place is farther than this from anything: the square of it is a float.
 constexpr double no_limit = 1e18;
@@ -90,6 +92,7 @@ CoagulateEffect::CoagulateEffect() {
         }
         programs_.push_back(std::move(program));
     }
+    programs_.push_back({"tissue/coagulate.vert", "tissue/coagulate_keep.frag", {}});
 }
 CoagulateEffect::~CoagulateEffect() = default;
 
@@ -220,11 +223,13 @@ Work CoagulateEffect::prepare(Prepare& prepare) {
         }
         drawn_tiles_.clear();
         const auto side = static_cast<float>((size + TileTree::tile_texels - 1) / TileTree::tile_texels);
+        const auto count = static_cast<float>(contacts_.contacts().size());
         for (float y = 0.0F; y < side; y += 1.0F) {
             for (float x = 0.0F; x < side; x += 1.0F) {
-                drawn_tiles_.emplace_back(x, y, 0.0F, static_cast<float>(contacts_.contacts().size()));
+                drawn_tiles_.emplace_back(x, y, 0.0F, count);
             }
         }
+        touched_tiles_ = contacts_.contacts().empty() ? 0 : drawn_tiles_.size();
         return Work::all(0);
     }
     PixelRegion region;
@@ -278,8 +283,8 @@ void CoagulateEffect::find_region(TileTree& tiles, PixelRegion& region) {
     region = region.confined(tiles.size(), tiles.size());
 }
 
-/// Every tile of the region, with its contacts in the order of all contacts, so that sums come out the same
-/// however the texture is divided.
+/// Every tile of the region, those that contacts reach first, with its contacts in the order of all contacts,
+/// so that sums come out the same however the texture is divided.
 void CoagulateEffect::list_tiles(int side, const PixelRegion& region) {
     constexpr int t = TileTree::tile_texels;
     list_.assign((pair_tiles_.size() + 3) / 4, glm::vec4(0.0F));
@@ -298,6 +303,9 @@ void CoagulateEffect::list_tiles(int side, const PixelRegion& region) {
             }
         }
     }
+    const auto kept =
+        std::ranges::partition(drawn_tiles_, [](const glm::vec4& tile) { return tile.w > 0.0F; });
+    touched_tiles_ = drawn_tiles_.size() - kept.size();
     for (std::size_t p = 0; p < pair_tiles_.size(); ++p) {
         const std::uint32_t entry = next_[pair_tiles_[p]]++;
         list_[entry / 4][static_cast<int>(entry % 4)] = static_cast<float>(pair_contacts_[p]);
@@ -321,15 +329,33 @@ void CoagulateEffect::draw(const Pass& pass) {
     const bool has_long_ways = std::ranges::any_of(contacts_.contacts(), [](const Contact& contact) {
         return glm::distance(contact.from, contact.to) > contact.sigma;
     });
-    const gl::Program& program =
-        pass.use((params_.metric == Metric::uv ? in_uv : 0) | (has_long_ways ? long_ways : 0) |
-                 (contacts_.has_steps() ? in_steps : 0));
     gpu_->tiles.upload(pass.gl(), drawn_tiles_, "tiles with contacts");
     gpu_->list.upload(pass.gl(), list_, "contacts of tiles");
     gpu_->contacts.upload(pass.gl(), packed_, "contacts");
+    const std::size_t variant = (params_.metric == Metric::uv ? in_uv : 0) | (has_long_ways ? long_ways : 0) |
+                                (contacts_.has_steps() ? in_steps : 0);
+    draw_tiles(pass, variant, 0, touched_tiles_);
+    draw_tiles(pass, untouched, touched_tiles_, drawn_tiles_.size());
+    began_ = true;
+    last_time_s_ = time_s_;
+    contacts_.keep_places(values_);
+}
+
+void CoagulateEffect::draw_tiles(const Pass& pass, std::size_t variant, std::size_t first, std::size_t end) {
+    if (first == end) {
+        return;
+    }
+    const gl::Program& program = pass.use(variant);
     pass.bind(program, "u_tiles", gpu_->tiles.texture(), gl::Filter::nearest);
-    pass.bind(program, "u_list", gpu_->list.texture(), gl::Filter::nearest);
-    pass.bind(program, "u_contacts", gpu_->contacts.texture(), gl::Filter::nearest);
+    if (variant != untouched) {
+        pass.bind(program, "u_list", gpu_->list.texture(), gl::Filter::nearest);
+        pass.bind(program, "u_contacts", gpu_->contacts.texture(), gl::Filter::nearest);
+        program.set("u_e_max", static_cast<float>(params_.max_energy));
+        program.set("u_limit", limit_);
+        if (params_.metric == Metric::world) {
+            pass.bind(program, "u_position", "position");
+        }
+    }
     if (loads_ && gpu_->saved_of) {
         if (!gpu_->saved) {
             gpu_->saved = gl::Texture::from_image(pass.gl(), gpu_->saved_of->image, "saved energy");
@@ -338,22 +364,15 @@ void CoagulateEffect::draw(const Pass& pass) {
     } else {
         pass.bind(program, "u_last", "last");
     }
-    if (params_.metric == Metric::world) {
-        pass.bind(program, "u_position", "position");
-    }
     program.set("u_keep", loads_ && !gpu_->saved_of ? 0.0F : 1.0F);
     program.set("u_size", static_cast<float>(pass.size().x));
     program.set("u_tile_texels", static_cast<float>(TileTree::tile_texels));
-    program.set("u_e_max", static_cast<float>(params_.max_energy));
-    program.set("u_limit", limit_);
+    program.set("u_first_tile", static_cast<int>(first));
     GLint bits = 0;
     pass.gl().GetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0,
                                                   GL_FRAMEBUFFER_ATTACHMENT_RED_SIZE, &bits);
     program.set("u_half", bits == 16);
-    pass.draw_generated(GL_TRIANGLE_STRIP, 4, static_cast<int>(drawn_tiles_.size()));
-    began_ = true;
-    last_time_s_ = time_s_;
-    contacts_.keep_places(values_);
+    pass.draw_generated(GL_TRIANGLE_STRIP, 4, static_cast<int>(end - first));
 }
 
 }  // namespace viscera::tissue

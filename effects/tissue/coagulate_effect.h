@@ -56,6 +56,7 @@ class CoagulateEffect final : public Effect {
     void find_region(TileTree& tiles, PixelRegion& region);
     void list_tiles(int side, const PixelRegion& region);
     void pack_contacts();
+    void draw_tiles(const Pass& pass, std::size_t variant, std::size_t first, std::size_t end);
     void find_limit(const HostValues* values);
 
     CoagulateParams params_;
@@ -77,6 +78,7 @@ class CoagulateEffect final : public Effect {
     std::vector<std::uint32_t> pair_contacts_;
     std::vector<std::uint32_t> next_;     ///< by tile
     std::vector<glm::vec4> drawn_tiles_;  ///< as glsl/tissue/coagulate.vert
+    std::size_t touched_tiles_ = 0;       ///< how many of them, the first ones, contacts reach
     std::vector<glm::vec4> list_;
     std::vector<glm::vec4> packed_;
     std::unique_ptr<Gpu> gpu_;

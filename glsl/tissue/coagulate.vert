@@ -2,12 +2,13 @@
 // One square of texels per instance, with the contacts that reach it.
 #include "tissue/list.glsl"
 uniform sampler2D u_tiles;  // x, y [tiles], first entry of its list of contacts, how many
+uniform int u_first_tile;
 uniform float u_tile_texels;
 uniform float u_size;  // texels along each side of the target
 flat out ivec2 v_contacts;
 
 void main() {
-    vec4 tile = list_item(u_tiles, gl_InstanceID);
+    vec4 tile = list_item(u_tiles, u_first_tile + gl_InstanceID);
     v_contacts = ivec2(tile.zw);
     vec2 corner = vec2(float(gl_VertexID & 1), float(gl_VertexID >> 1));
     gl_Position = vec4(2.0 * (tile.xy + corner) * u_tile_texels / u_size - 1.0, 0.0, 1.0);
