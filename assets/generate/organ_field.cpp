@@ -33,7 +33,7 @@ float OrganField::liver(const glm::vec3& p) const {
     // Notch and fissure of the round ligament between the lobes.
     d = carve(d, rod(p, {17.0F, -44.0F, -24.0F}, {20.0F, 2.0F, 20.0F}, 5.0F, 3.0F), 12.0F);
     // The bed.
-    d = carve(d, rod(p, fundus + glm::vec3(0.0F, -1.0F, 0.0F), neck, 15.0F, 9.0F), 5.0F);
+    d = carve(d, rod(p, fundus, neck, 12.0F, 3.0F), 5.0F);
     // A shallow hollow on the front, as a wedge biopsy leaves it: blood stands in it.
     d = carve(d, ellipsoid(p, {-66.0F, -57.0F, 16.0F}, {13.0F, 8.0F, 11.0F}), 4.0F);
     return d + 1.5F * noise(p, 31.0, seed_) + 0.5F * noise(p, 11.0, seed_ + 1U);
@@ -57,7 +57,7 @@ float OrganField::fat(const glm::vec3& p) const {
 
 double OrganField::distance(const glm::dvec3& at) const {
     const glm::vec3 p(at);
-    return join(join(liver(p), gallbladder(p), 4.0F), fat(p), 6.0F);
+    return join(join(liver(p), gallbladder(p), 7.0F), fat(p), 6.0F);
 }
 
 glm::dvec3 OrganField::normal(const glm::dvec3& p) const {
@@ -99,9 +99,8 @@ OrganTissue OrganField::tissue(const glm::dvec3& at) const {
 
 double OrganField::bed_distance(const glm::dvec3& at) const {
     const glm::vec3 p(at);
-    const double a = static_cast<double>(liver(p));
-    const double b = static_cast<double>(gallbladder(p));
-    return std::sqrt(a * a + b * b);
+    // The joint is rounded, so on the line itself both are a little above 0, and equal.
+    return std::abs(static_cast<double>(liver(p) - gallbladder(p)));
 }
 
 }  // namespace viscera::assets

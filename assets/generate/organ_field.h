@@ -31,7 +31,7 @@ class OrganField {
     /// The point of the surface that Newton's steps lead to from p.
     [[nodiscard]] glm::dvec3 onto_surface(glm::dvec3 p) const;
     [[nodiscard]] OrganTissue tissue(const glm::dvec3& p) const;
-    /// Distance from the line where the gallbladder meets its bed [mm]: where it is cut loose.
+    /// Distance on the surface from the line where the gallbladder meets its bed [mm]: where it is cut loose.
     [[nodiscard]] double bed_distance(const glm::dvec3& p) const;
 
   private:

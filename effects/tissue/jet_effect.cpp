@@ -129,6 +129,8 @@ void JetEffect::draw(const Pass& pass) {
     program.set("u_projection", glm::mat4(view.projection));
     program.set("u_exposure", static_cast<float>(params_.exposure_s));
     program.set("u_parallel", view.orthographic);
+    // The projection's second row turns heights [mm, per mm of depth] into halves of the picture's height.
+    program.set("u_pixel", static_cast<float>(2.0 / (std::abs(view.projection[1][1]) * pass.size().y)));
     program.set("u_colour", glm::vec3(params_.colour));
     pass.raster(over_picture);
     pass.draw_generated(GL_TRIANGLE_STRIP, 4, static_cast<int>(count));

@@ -5,13 +5,16 @@ uniform mat4 u_to_eye;
 uniform mat4 u_projection;
 uniform float u_exposure;       // [s]
 uniform bool u_parallel;        // orthographic
+uniform float u_pixel;          // width of a pixel [mm]: per mm of depth, or, orthographic, anywhere
 #ifdef ENERGY
 uniform sampler2D u_energy;
 uniform float u_sealed;
 uniform vec2 u_source[64];      // UV of the wounds
 #endif
-out vec2 v_across;              // -1 to 1 across and along the streak's ends
+out vec2 v_across;              // from the streak's middle, across and along [its radius]
 flat out float v_stretch;       // half length over radius
+flat out float v_pixel;         // width of a pixel over radius
+flat out float v_cover;         // share of the drawn streak that is blood
 
 void main() {
     int width = textureSize(u_particles, 0).x;
@@ -32,9 +35,18 @@ void main() {
     float energy = texelFetch(u_energy, ivec2(clamp(u_source[int(motion.w)], 0.0, 0.9999) * size), 0).r;
     radius *= sqrt(1.0 - smoothstep(0.5 * u_sealed, u_sealed, energy));
 #endif
-    v_across = vec2(float(gl_VertexID & 1), float(gl_VertexID >> 1)) * 2.0 - 1.0;
-    v_stretch = reach / max(radius, 1e-6);
-    vec3 corner = centre + v_across.x * radius * side + v_across.y * (reach + radius) * axis;
+    float pixel = u_pixel * (u_parallel ? 1.0 : max(-centre.z, 0.0));
+    // What is thinner than a pixel is drawn as wide as one: no streak breaks up into dots.
+    float drawn = max(radius, 0.5 * pixel);
+    v_stretch = reach / max(drawn, 1e-6);
+    v_pixel = pixel / max(drawn, 1e-6);
+    // And as much fainter: areas, over pi, of the streak and of what is drawn, whose faded edge makes the round ends
+    // larger.
+    float straight = 1.2732395 * reach;
+    v_cover = radius * (straight + radius) / max(drawn * (straight + drawn * (1.0 + v_pixel * v_pixel / 12.0)), 1e-12);
+    // Half a pixel more on each side, over which the edge fades.
+    vec2 extent = vec2(1.0, v_stretch + 1.0) + 0.5 * v_pixel;
+    v_across = (vec2(float(gl_VertexID & 1), float(gl_VertexID >> 1)) * 2.0 - 1.0) * extent;
+    vec3 corner = centre + drawn * (v_across.x * side + v_across.y * axis);
     gl_Position = radius > 0.0 ? u_projection * vec4(corner, 1.0) : vec4(2.0, 2.0, 2.0, 1.0);
-    v_across.y *= v_stretch + 1.0;
 }
