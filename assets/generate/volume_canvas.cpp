@@ -80,6 +80,32 @@ glm::vec3 Canvas::position(const glm::ivec3& voxel) const {
            f.z * (above - below);
 }
 
+void Canvas::blur(double sigma_mm) {
+    std::size_t stride = 1;
+    std::vector<float> row;
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto length = static_cast<std::size_t>(dims_[axis]);
+        const double voxels = sigma_mm / grid_.spacing_mm[axis];
+        const auto beside = static_cast<float>(0.5 * voxels * voxels);
+        const float middle = 1.0F - 2.0F * beside;
+        row.resize(length + 2);
+        for (std::size_t first = 0; first < values_.size(); ++first) {
+            if ((first / stride) % length != 0) {
+                continue;
+            }
+            for (std::size_t i = 0; i < length; ++i) {
+                row[i + 1] = values_[first + i * stride];
+            }
+            row.front() = row[1];
+            row.back() = row[length];
+            for (std::size_t i = 0; i < length; ++i) {
+                values_[first + i * stride] = beside * (row[i] + row[i + 2]) + middle * row[i + 1];
+            }
+        }
+        stride *= length;
+    }
+}
+
 void Canvas::add_noise(float sigma, std::uint32_t seed) {
     // Four bytes add up to a mean of 510 with variance 4 (256^2 - 1) / 12.
     const float scale = sigma / std::sqrt(4.0F * 65535.0F / 12.0F);

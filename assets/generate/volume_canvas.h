@@ -63,6 +63,10 @@ class Canvas {
         }
     }
 
+    /// What a scanner's point spread leaves, by its standard deviation: at most 0.7 voxels on each axis.
+    /// Three weights of that variance; border voxels count as going on outside.
+    void blur(double sigma_mm);
+
     /// Adds noise of a normal-like distribution to each voxel; sum of four uniform numbers.
     void add_noise(float sigma, std::uint32_t seed);
 

@@ -24,6 +24,7 @@ constexpr float swelling = 17.0F;
 constexpr float compact_bone = 1250.0F;
 
 constexpr float noise_sigma = 6.0F;
+constexpr double point_spread_mm = 0.7;  // of a scanner; sharper edges show the grid as rings
 constexpr Bounds braincase_box{{-72.0F, -80.0F, -48.0F}, {72.0F, 98.0F, 100.0F}};
 constexpr Bounds face_box{{-80.0F, -112.0F, -70.0F}, {80.0F, 50.0F, 40.0F}};
 constexpr Bounds jaw_box{{-64.0F, -94.0F, -116.0F}, {64.0F, 20.0F, -14.0F}};
@@ -209,6 +210,7 @@ HeadVolumes make_head(std::uint64_t seed, int coarser) {
     paint_spine(canvas, salt);
     paint_jaw(canvas, salt);
     paint_brain(canvas, salt);
+    canvas.blur(point_spread_mm);
     canvas.add_noise(noise_sigma, salt);
     HeadVolumes head{.ct = canvas.values(ScalarType::i16),
                      .labels = canvas.labels(),
