@@ -386,38 +386,34 @@ void find_occupied(const BrickGrid& bricks, std::span<const StoredRange> visible
     }
 }
 
-void signed_distance(glm::ivec3 dims, std::span<const std::uint8_t> occupied,
-                     std::vector<std::int8_t>& distance, DistanceScratch& scratch) {
+void distance_to_others(glm::ivec3 dims, std::span<const std::uint8_t> kinds, int kind,
+                        std::vector<std::uint8_t>& distance, DistanceScratch& scratch) {
     const bool any = dims.x > 0 && dims.y > 0 && dims.z > 0;
-    if (occupied.size() != (any ? at(dims - 1, dims) + 1 : 0)) {
-        throw Error(ErrorCode::usage, "signed_distance", "occupancy and grid differ in size");
+    if (kinds.size() != (any ? at(dims - 1, dims) + 1 : 0)) {
+        throw Error(ErrorCode::usage, "distance_to_others", "kinds and grid differ in size");
     }
-    distance.resize(occupied.size());
+    distance.resize(kinds.size());
     if (!any) {
         return;
     }
-    const DistanceGrid to_occupied(dims, scratch.to_occupied, scratch.row);
-    const DistanceGrid to_empty(dims, scratch.to_empty, scratch.row);
+    const DistanceGrid grid(dims, scratch.grid, scratch.row);
     const auto for_rows = [&](const auto& act) {
         for (int z = 0; z < dims.z; ++z) {
             for (int y = 0; y < dims.y; ++y) {
-                act(at({0, y, z}, dims), to_occupied.row(y, z), to_empty.row(y, z));
+                act(at({0, y, z}, dims), grid.row(y, z));
             }
         }
     };
-    for_rows([&](std::size_t begin, std::uint8_t* outer, std::uint8_t* inner) {
-        for (int x = 0; x < dims.x; ++x) {
-            const bool full = occupied[begin + static_cast<std::size_t>(x)] != 0;
-            outer[x] = full ? 0 : distance_reach;
-            inner[x] = full ? distance_reach : 0;
+    const auto width = static_cast<std::size_t>(dims.x);
+    for_rows([&](std::size_t begin, std::uint8_t* row) {
+        for (std::size_t x = 0; x < width; ++x) {
+            row[x] = kinds[begin + x] == kind ? distance_reach : 0;
         }
     });
-    to_occupied.spread();
-    to_empty.spread();
-    // One of the two is 0.
-    for_rows([&](std::size_t begin, const std::uint8_t* outer, const std::uint8_t* inner) {
-        for (int x = 0; x < dims.x; ++x) {
-            distance[begin + static_cast<std::size_t>(x)] = static_cast<std::int8_t>(outer[x] - inner[x]);
+    grid.spread();
+    for_rows([&](std::size_t begin, const std::uint8_t* row) {
+        for (std::size_t x = 0; x < width; ++x) {
+            distance[begin + x] = kinds[begin + x] == kind ? row[x] : distance[begin + x];
         }
     });
 }

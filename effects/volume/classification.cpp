@@ -243,6 +243,31 @@ std::vector<StoredRange> stored_ranges(const TransferFunction& function, const T
     return stored;
 }
 
+std::vector<StoredRange> stored_ranges(const ClassificationTable& table, const TexelRange& range,
+                                       const TexelMap& stored_of_texel) {
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    const std::vector<glm::vec4>& entries = table.entries;
+    const double entry = (range.high - range.low) / static_cast<double>(entries.size() - 1);
+    // Filters and the place in the table are rounded.
+    const double slack = 0.02 * entry + 8.0 * range.resolution();
+    std::vector<StoredRange> stored;
+    for (std::size_t i = 0; i < entries.size();) {
+        if (!(entries[i].a > 0.0F)) {
+            ++i;
+            continue;
+        }
+        const auto first = static_cast<double>(i);
+        while (i < entries.size() && entries[i].a > 0.0F) {
+            ++i;
+        }
+        const double low = range.low + (first - 0.5) * entry - slack;
+        const double high = range.low + (static_cast<double>(i) - 0.5) * entry + slack;
+        stored.push_back({first == 0.0 ? -infinity : rounded_down(stored_of_texel.value_of(low)),
+                          i == entries.size() ? infinity : -rounded_down(-stored_of_texel.value_of(high))});
+    }
+    return stored;
+}
+
 double opacity_of(double extinction_per_mm, double length_mm) {
     return -std::expm1(-extinction_per_mm * length_mm);
 }

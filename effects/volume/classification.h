@@ -79,6 +79,13 @@ inline constexpr int table_entries = 4096;
 [[nodiscard]] std::vector<StoredRange> stored_ranges(const TransferFunction& function, const TexelMap& map,
                                                      const TexelRange& range, int entries = table_entries);
 
+/// The same where the nearest entry of a table is all that is looked at: what shows nothing there may touch
+/// what does, so that a background at a knot of opacity 0 is empty. `range`: of the table, in texels;
+/// `stored_of_texel`: scale > 0.
+[[nodiscard]] std::vector<StoredRange> stored_ranges(const ClassificationTable& table,
+                                                     const TexelRange& range,
+                                                     const TexelMap& stored_of_texel);
+
 /// Opacity of a length of constant extinction, 1 - exp(-extinction length).
 [[nodiscard]] double opacity_of(double extinction_per_mm, double length_mm);
 

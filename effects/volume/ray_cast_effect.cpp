@@ -141,21 +141,30 @@ void RayCastEffect::find_function(Prepare& prepare) {
     variant_.look = projects() ? Look::Variant{} : Look::variant(params_.look, function_);
 }
 
-/// Texels between the least and the greatest value.
+/// Texels between the least and the greatest value, as floats: a knot at an end then lies on the table's
+/// first or last entry, not beside it by its rounding.
 TexelRange RayCastEffect::texel_range(const TexelMap& stored_of_texel) const {
     const Volume& volume = source_->volume();
     const TexelMap map{volume.slope * stored_of_texel.scale, volume.value_of(stored_of_texel.offset)};
-    const double a = map.texel_of(source_->statistics.min);
-    const double b = map.texel_of(source_->statistics.max);
+    const auto texel = [&](double value) {
+        return static_cast<double>(static_cast<float>(map.texel_of(value)));
+    };
+    const double a = texel(source_->statistics.min);
+    const double b = texel(source_->statistics.max);
     return {std::min(a, b), std::max(a, b)};
 }
 
-void RayCastEffect::make_table(const gl::Functions& gl, const TexelMap& stored_of_texel) {
+ExtinctionKnots RayCastEffect::knots_of_texel(const TexelMap& stored_of_texel) const {
     const Volume& volume = source_->volume();
     const TexelMap map{volume.slope * stored_of_texel.scale, volume.value_of(stored_of_texel.offset)};
+    return extinction_knots(function_, map, texel_range(stored_of_texel));
+}
+
+/// What the shader looks values up in.
+ClassificationTable RayCastEffect::table_of_texel(const TexelMap& stored_of_texel) const {
     const TexelRange range = texel_range(stored_of_texel);
     const int entries = params_.transfer_function.entries;
-    const ExtinctionKnots knots = extinction_knots(function_, map, range);
+    const ExtinctionKnots knots = knots_of_texel(stored_of_texel);
     ClassificationTable table = tabulate(knots, range, entries);
     if (projects()) {  // opacity as it is: extremes and means have no length
         for (int i = 0; i < entries; ++i) {
@@ -163,11 +172,17 @@ void RayCastEffect::make_table(const gl::Functions& gl, const TexelMap& stored_o
                 knots.evaluate(range.low + (range.high - range.low) * i / (entries - 1));
         }
     }
-    table_.emplace(gl::Texture::make_2d(gl, entries, 1, PixelFormat::rgba32f, "transfer function"));
+    return table;
+}
+
+void RayCastEffect::make_table(const gl::Functions& gl, const TexelMap& stored_of_texel) {
+    const ClassificationTable table = table_of_texel(stored_of_texel);
+    table_.emplace(gl::Texture::make_2d(gl, params_.transfer_function.entries, 1, PixelFormat::rgba32f,
+                                        "transfer function"));
     table_->upload(std::as_bytes(std::span(table.entries)));
     table_place_ = table.place;
     if (params_.sampling.scheme == Scheme::preintegrated && !projects()) {
-        slabs_.emplace(gl, tabulate_slabs(knots, range));
+        slabs_.emplace(gl, tabulate_slabs(knots_of_texel(stored_of_texel), texel_range(stored_of_texel)));
     }
 }
 

@@ -16,7 +16,13 @@ std::vector<StoredRange> RayCastEffect::visible() const {
     const double b = map.texel_of(source_->statistics.max);
     const TexelRange all{std::min(a, b), std::max(a, b)};
     const int entries = params_.transfer_function.entries;
-    std::vector<StoredRange> shown = stored_ranges(function_, map, all, entries);
+    // Where the table's nearest entry decides, it decides here, too.
+    const bool nearest = !params_.transfer_function.interpolate && volume.slope * (b - a) != 0.0 &&
+                         (projects() || params_.sampling.scheme != Scheme::preintegrated);
+    const TexelMap texels = texel_map(sampled_->volume().type);
+    std::vector<StoredRange> shown = nearest
+                                         ? stored_ranges(table_of_texel(texels), texel_range(texels), texels)
+                                         : stored_ranges(function_, map, all, entries);
     if (!projects()) {
         look_.widen(params_.look, function_, map, all, entries, shown);
     }
@@ -64,7 +70,8 @@ SmoothRule RayCastEffect::smooth_rule() const {
         diagonal_mm += glm::length(glm::dvec3(space_.box_to_world()[axis]));
     }
     return make_smooth_rule(extinction_knots(function_, map, {std::min(a, b), std::max(a, b)}),
-                            std::min(a, b), std::max(a, b), diagonal_mm, params_.sampling.tolerance);
+                            std::min(a, b), std::max(a, b), diagonal_mm, params_.sampling.tolerance,
+                            lattice_.slab_mm / (brick_size * voxel_spacing_mm(space_)));
 }
 
 /// Finds which bricks show anything; false when none does.
@@ -76,7 +83,8 @@ bool RayCastEffect::find_bricks(Prepare& prepare) {
     // The rule knows of the transfer function alone.
     const bool adaptive =
         params_.sampling.tolerance > 0.0 && !projects() && !params_.look.used(variant_.look);
-    const std::uint64_t visible_key = Hash().add(parameters_key_).add(source_->version()).value();
+    const std::uint64_t visible_key =
+        Hash().add(parameters_key_).add(source_->version()).add(lattice_.slab_mm).value();
     if (visible_key_ != visible_key) {
         visible_ = visible();
         smooth_ = adaptive ? smooth_rule() : SmoothRule{};
@@ -98,14 +106,14 @@ bool RayCastEffect::find_bricks(Prepare& prepare) {
                           filter.support_voxels());
     }
     bricks_ = load_bricks(prepare.assets(), *sampled_, sampled_channel_, brick_size, border, rows);
-    const std::uint64_t key = Hash().add(parameters_key_).add(bricks_.get()).add(bricks_->version).value();
+    const std::uint64_t key = Hash().add(visible_key).add(bricks_.get()).add(bricks_->version).value();
     skip_map_.update(bricks_->grid, visible_, crop_, smooth_, key,
                      filter.overshoot() + overshoot(params_.sampling));
     if (skip_map_.occupancy() == 0.0) {
         return false;
     }
     // Where nothing can be left out, looking for it only costs.
-    if (adaptive && skip_map_.smooth_share() > 0.0) {
+    if (adaptive && skip_map_.any_smooth()) {
         variant_.skipping = Skipping::adaptive;
     } else if (skip_map_.occupancy() < 0.98) {
         variant_.skipping = Skipping::empty;

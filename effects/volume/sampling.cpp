@@ -54,9 +54,8 @@ void SamplingParams::visit(ParamVisitor& v) {
              .max = 1.0},
             termination);
     v.field({.name = "tolerance",
-             .doc = "Slabs are four times as long where the transfer function changes so little that colour "
-                    "and opacity err "
-                    "by no more than this; 0: nowhere.",
+             .doc = "Slabs are 4, 16 or 64 times as long where the transfer function changes so little that "
+                    "colour and opacity err by no more than this; 0: nowhere.",
              .min = 0.0,
              .max = 1.0},
             tolerance);

@@ -11,8 +11,7 @@
 namespace viscera::volume {
 namespace {
 
-constexpr int kind_occupied = 32;
-constexpr int kind_smooth = 64;
+constexpr int kind_step = distance_reach + 1;  ///< between the texels of two kinds
 
 }  // namespace
 
@@ -96,9 +95,14 @@ std::shared_ptr<Bricks> load_bricks(Assets& assets, const Source& source, int ch
 }
 
 SmoothRule make_smooth_rule(const ExtinctionKnots& knots, double low, double high, double way_mm,
-                            double tolerance) {
-    SmoothRule rule{.variation = std::vector<float>(table_entries),
-                    .tolerance = static_cast<float>(tolerance)};
+                            double tolerance, double slab_bricks) {
+    SmoothRule rule{.variation = std::vector<float>(table_entries)};
+    double joined = 1.0;
+    for (std::size_t i = 0; i < rule.most.size(); ++i) {
+        joined *= 4.0;
+        rule.most[i] = static_cast<float>(tolerance / std::max(joined * slab_bricks, 1.0));
+        rule.reach[i] = static_cast<int>(std::min(std::ceil(0.5 * joined * slab_bricks), 1e3));
+    }
     const double entries = table_entries - 1;
     rule.scale = high > low ? entries / (high - low) : 0.0;
     rule.offset = -low * rule.scale;
@@ -116,28 +120,23 @@ SmoothRule make_smooth_rule(const ExtinctionKnots& knots, double low, double hig
 
 namespace {
 
-/// Marks the occupied bricks in which the transfer function hardly changes; their share of all.
-double find_smooth(const BrickGrid& bricks, const SmoothRule& rule, float overshoot,
-                   std::span<const std::uint8_t> occupied, std::vector<std::uint8_t>& smooth) {
-    smooth.assign(bricks.count(), 0);
-    if (rule.variation.empty() || bricks.count() == 0) {
-        return 0.0;
-    }
+/// The highest level that each occupied brick's own range allows, counted from 1; 0: none.
+void find_levels(const BrickGrid& bricks, const SmoothRule& rule, float overshoot,
+                 std::span<const std::uint8_t> occupied, std::vector<std::uint8_t>& smooth) {
+    smooth.assign(occupied.size(), 0);
     const auto scale = static_cast<float>(rule.scale);
     const auto offset = static_cast<float>(rule.offset);
     const auto last = static_cast<float>(rule.variation.size() - 1);
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < bricks.count(); ++i) {
+    for (std::size_t i = 0; i < occupied.size(); ++i) {
         const float beyond = overshoot * (bricks.max[i] - bricks.min[i]);
         const auto from =
             static_cast<std::size_t>(std::clamp(scale * (bricks.min[i] - beyond) + offset, 0.0F, last));
         const auto to = static_cast<std::size_t>(
             std::clamp(scale * (bricks.max[i] + beyond) + offset + 1.0F, 0.0F, last));
-        const bool is_smooth = rule.variation[to] - rule.variation[from] <= rule.tolerance;
-        smooth[i] = occupied[i] & static_cast<std::uint8_t>(is_smooth);
-        count += smooth[i];
+        const float varies = rule.variation[to] - rule.variation[from];
+        const auto level = std::ranges::count_if(rule.most, [&](float most) { return varies <= most; });
+        smooth[i] = static_cast<std::uint8_t>(occupied[i] * level);
     }
-    return static_cast<double>(count) / static_cast<double>(bricks.count());
 }
 
 /// Box around the bricks that are not 0.
@@ -173,28 +172,47 @@ void SkipMap::update(const BrickGrid& bricks, std::span<const StoredRange> visib
     find_occupied(bricks, visible, crop, occupied_, overshoot);
     occupancy_ = volume::occupancy(occupied_);
     box_ = box_around(dims_, occupied_);
-    signed_distance(dims_, occupied_, distance_, scratch_);
-    texels_.resize(occupied_.size());
-    std::ranges::transform(distance_, texels_.begin(), [](std::int8_t d) {
-        return static_cast<std::uint8_t>(std::abs(static_cast<int>(d)) + (d < 0 ? kind_occupied : 0));
-    });
-    smooth_share_ = find_smooth(bricks, smooth, overshoot, occupied_, kind_);
-    if (smooth_share_ == 0.0) {
-        return;
+    kind_ = occupied_;
+    const int kinds = find_smooth(bricks, smooth, overshoot);
+    any_smooth_ = kinds > 2;
+    for (int kind = 0; kind < kinds; ++kind) {
+        distance_to_others(dims_, kind_, kind, texels_, scratch_);
     }
-    signed_distance(dims_, kind_, distance_, scratch_);
     for (std::size_t i = 0; i < texels_.size(); ++i) {
-        if (kind_[i] != 0) {
-            texels_[i] = static_cast<std::uint8_t>(-distance_[i] + kind_smooth);
-        }
-        kind_[i] ^= occupied_[i];
+        texels_[i] = static_cast<std::uint8_t>(texels_[i] + kind_step * kind_[i]);
     }
-    signed_distance(dims_, kind_, distance_, scratch_);
-    for (std::size_t i = 0; i < texels_.size(); ++i) {
-        if (kind_[i] != 0) {
-            texels_[i] = static_cast<std::uint8_t>(-distance_[i] + kind_occupied);
+}
+
+/// Raises the kinds of bricks in which long slabs do; the number of kinds.
+int SkipMap::find_smooth(const BrickGrid& bricks, const SmoothRule& rule, float overshoot) {
+    if (rule.variation.empty()) {
+        return 2;
+    }
+    find_levels(bricks, rule, overshoot, occupied_, smooth_);
+    int kinds = 2;
+    for (int level = 1; level <= slab_levels; ++level) {
+        // Islands and holes of single bricks would end runs all the time: what is left is as thick as a slab.
+        const int reach = rule.reach[static_cast<std::size_t>(level - 1)];
+        if (reach >= distance_reach) {
+            break;
+        }
+        opened_.resize(smooth_.size());
+        for (std::size_t i = 0; i < smooth_.size(); ++i) {
+            opened_[i] = static_cast<std::uint8_t>(smooth_[i] >= level);
+        }
+        distance_to_others(dims_, opened_, 1, texels_, scratch_);
+        for (std::size_t i = 0; i < opened_.size(); ++i) {
+            opened_[i] = static_cast<std::uint8_t>(opened_[i] != 0 && texels_[i] > reach);
+        }
+        distance_to_others(dims_, opened_, 0, texels_, scratch_);
+        for (std::size_t i = 0; i < opened_.size(); ++i) {
+            if (opened_[i] != 0 || texels_[i] <= reach) {
+                kind_[i] = static_cast<std::uint8_t>(1 + level);
+                kinds = 2 + level;
+            }
         }
     }
+    return kinds;
 }
 
 const gl::Texture& SkipMap::texture(const gl::Functions& gl) {

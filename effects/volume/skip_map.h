@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include "effects/volume/bricks.h"
@@ -22,20 +23,25 @@ struct Bricks {
 /// voxels up to `support` away. space: curvilinear.
 [[nodiscard]] BrickRows brick_rows(const Space& space, int size, double reach, double support);
 
+/// Where slabs may be 4, 16 or 64 times as long.
+inline constexpr int slab_levels = 3;
+
 /// Where the transfer function hardly changes: a brick is smooth when `variation` grows by at most
-/// `tolerance` between its least and greatest stored number.
+/// `most[i]` between its least and greatest stored number, enough for slabs of 4^(i + 1).
 struct SmoothRule {
     std::vector<float>
         variation;       ///< of colour and opacity, summed from the first entry; empty: no brick is smooth
     double scale = 0.0;  ///< entry = scale * stored + offset
     double offset = 0.0;
-    float tolerance = 0.0F;
+    std::array<float, slab_levels> most{};  ///< not growing
+    std::array<int, slab_levels> reach{};   ///< half a long slab [bricks]: thinner places do not count
 };
 /// Sums, over 4096 entries from `low` to `high` (stored), how much the picture can change when a value is
 /// taken for another: extinction times the longest way through the volume, and the largest change of a
-/// colour.
+/// colour. A slab of several bricks takes the value in its middle for all of them, which differ by what each
+/// of them varies: each may vary by its share of the tolerance only. `slab_bricks`: length of one slab.
 [[nodiscard]] SmoothRule make_smooth_rule(const ExtinctionKnots& knots, double low, double high,
-                                          double way_mm, double tolerance);
+                                          double way_mm, double tolerance, double slab_bricks);
 
 /// Which bricks show something under one transfer function and crop, as the march reads it: see
 /// glsl/volume/skip.glsl.
@@ -49,22 +55,25 @@ class SkipMap {
     [[nodiscard]] double occupancy() const { return occupancy_; }
     /// Box around all bricks that show something; nothing outside it does.
     [[nodiscard]] const VoxelBox& occupied_box() const { return box_; }
-    /// Share of bricks in which long slabs do.
-    [[nodiscard]] double smooth_share() const { return smooth_share_; }
-    /// A texture of unsigned bytes: 32 * kind (0 empty, 1 occupied, 2 smooth) + distance in bricks to the
-    /// nearest of another kind.
+    /// Whether there are bricks in which long slabs do.
+    [[nodiscard]] bool any_smooth() const { return any_smooth_; }
+    /// A texture of unsigned bytes: 32 * kind (0 empty, 1 occupied, 1 + i: slabs of 4^i do) + distance in
+    /// bricks to the nearest of another kind.
     [[nodiscard]] const gl::Texture& texture(const gl::Functions& gl);
 
   private:
+    int find_smooth(const BrickGrid& bricks, const SmoothRule& rule, float overshoot);
+
     std::uint64_t key_ = 0;
     glm::ivec3 dims_{0};
     double occupancy_ = 1.0;
     VoxelBox box_;  ///< [bricks]
-    double smooth_share_ = 0.0;
+    bool any_smooth_ = false;
     std::vector<std::uint8_t> occupied_;
     std::vector<std::uint8_t> kind_;
+    std::vector<std::uint8_t> smooth_;
+    std::vector<std::uint8_t> opened_;
     std::vector<std::uint8_t> texels_;
-    std::vector<std::int8_t> distance_;
     DistanceScratch scratch_;
     std::optional<gl::Texture> texture_;
     std::uint64_t uploaded_ = 0;

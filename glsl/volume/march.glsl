@@ -10,7 +10,7 @@ float slab_mm;  // of this ray, whose slabs lie on a lattice of their own: volum
 #endif
 uniform int u_slab_limit;
 
-const int smooth_slabs = 4;  // slabs that are one where the transfer function hardly changes
+const int most_joined = 64;  // slabs that are one where the transfer function does not change
 
 // Slabs are found from their number, never by adding up: the same slab comes out the same however it was reached.
 Slab slab_at(float start, vec3 first, vec3 extent, int k, float number, float slabs, float offset) {
@@ -56,9 +56,13 @@ void march(Ray ray, vec2 interval, float offset, inout State state) {
         }
         while (k < end) {
 #ifdef ADAPTIVE
-            // Long slabs lie on a lattice of their own, so that where a run begins does not move them.
-            bool is_long = kind == run_smooth && (k & (smooth_slabs - 1)) == 0 && k + smooth_slabs <= end;
-            int number = is_long ? smooth_slabs : 1;
+            // Long slabs lie on lattices of their own, so that where a run begins does not move them.
+            int level = int(kind) - 1;
+            int number = 1;
+            for (int joined = 4, i = 1; joined <= most_joined; joined *= 4, ++i) {
+                bool fits = level >= i && (k & (joined - 1)) == 0 && k + joined <= end;
+                number = fits ? joined : number;
+            }
 #else
             const int number = 1;
 #endif

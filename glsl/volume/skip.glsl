@@ -7,7 +7,7 @@ uniform vec3 u_occupied_high;
 
 const uint run_empty = 0U;
 const uint run_full = 1U;    // every slab is sampled
-const uint run_smooth = 2U;  // the transfer function hardly changes here: longer slabs do
+// 1 + i: the transfer function hardly changes here, slabs of 4^i do
 
 struct Leaper {
     vec3 first;    // position of the march's start [bricks]

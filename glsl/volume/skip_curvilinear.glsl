@@ -6,7 +6,7 @@ uniform vec3 u_bricks_per_unit;  // bricks per texture coordinate
 
 const uint run_empty = 0U;
 const uint run_full = 1U;    // every slab is sampled
-const uint run_smooth = 2U;  // the transfer function hardly changes here: longer slabs do
+// 1 + i: the transfer function hardly changes here, slabs of 4^i do
 
 // Next to the box's faces a run is one slab [bricks], and elsewhere it ends half of that before them: rounding then never
 // loses a face that the ray is about to meet. Brick ranges have a border of more than a cell, so this is far more than needed.

@@ -297,79 +297,84 @@ TEST(Occupied, bricks_share_a_voxel_with_the_crop) {
     EXPECT_EQ(occupancy(occupied), 0.0);
 }
 
-/// Distance to the nearest brick of the other kind, all pairs.
-std::vector<std::int8_t> all_pairs(const glm::ivec3& dims, const std::vector<std::uint8_t>& occupied) {
-    std::vector<std::int8_t> distance(occupied.size());
+/// Distance to the nearest brick of another kind, all pairs.
+std::vector<std::uint8_t> all_pairs(const glm::ivec3& dims, const std::vector<std::uint8_t>& kinds) {
+    std::vector<std::uint8_t> distance(kinds.size());
     for_each(dims, [&](std::size_t i, const glm::ivec3& a) {
         int nearest = distance_reach;
         for_each(dims, [&](std::size_t j, const glm::ivec3& b) {
-            if (occupied[j] != occupied[i]) {
+            if (kinds[j] != kinds[i]) {
                 const glm::ivec3 apart = glm::abs(a - b);
                 nearest = std::min(nearest, std::max({apart.x, apart.y, apart.z}));
             }
         });
-        distance[i] = static_cast<std::int8_t>(occupied[i] != 0 ? -nearest : nearest);
+        distance[i] = static_cast<std::uint8_t>(nearest);
     });
     return distance;
 }
 
-TEST(SignedDistance, is_that_of_all_pairs) {
+TEST(DistanceToOthers, is_that_of_all_pairs) {
     std::mt19937 random(11);
     DistanceScratch scratch;
-    std::vector<std::int8_t> distance;
+    std::vector<std::uint8_t> distance;
     constexpr std::array<glm::ivec3, 7> sizes{
         {{1, 1, 1}, {1, 9, 13}, {70, 1, 3}, {7, 66, 1}, {13, 11, 9}, {3, 2, 40}, {65, 6, 4}}};
     for (const glm::ivec3& dims : sizes) {
         for (const unsigned per_mille : {1U, 10U, 200U, 800U, 990U, 999U}) {
-            std::vector<std::uint8_t> occupied(count_of(dims));
-            for (std::uint8_t& brick : occupied) {
-                brick = random() % 1000U < per_mille ? 1 : 0;
+            std::vector<std::uint8_t> kinds(count_of(dims));
+            for (std::uint8_t& brick : kinds) {
+                brick = static_cast<std::uint8_t>(random() % 1000U < per_mille ? 1U + random() % 2U : 0U);
             }
-            signed_distance(dims, occupied, distance, scratch);
-            ASSERT_EQ(distance, all_pairs(dims, occupied))
+            for (int kind = 0; kind < 3; ++kind) {
+                distance_to_others(dims, kinds, kind, distance, scratch);
+            }
+            ASSERT_EQ(distance, all_pairs(dims, kinds))
                 << dims.x << ' ' << dims.y << ' ' << dims.z << " at " << per_mille;
         }
     }
 }
 
-TEST(SignedDistance, ends_at_its_reach) {
-    const glm::ivec3 dims(100, 3, 2);
-    std::vector<std::uint8_t> occupied(count_of(dims), 0);
+TEST(DistanceToOthers, leaves_those_of_other_kinds_alone) {
     DistanceScratch scratch;
-    std::vector<std::int8_t> distance;
-    signed_distance(dims, occupied, distance, scratch);
-    EXPECT_THAT(distance, testing::Each(distance_reach));
-    occupied[0] = 1;
-    signed_distance(dims, occupied, distance, scratch);
+    std::vector<std::uint8_t> distance{7, 7, 7};
+    distance_to_others({3, 1, 1}, std::vector<std::uint8_t>{1, 0, 0}, 0, distance, scratch);
+    EXPECT_EQ(distance, (std::vector<std::uint8_t>{7, 1, 2}));
+}
+
+TEST(DistanceToOthers, ends_at_its_reach) {
+    const glm::ivec3 dims(100, 3, 2);
+    std::vector<std::uint8_t> kinds(count_of(dims), 0);
+    DistanceScratch scratch;
+    std::vector<std::uint8_t> distance;
+    distance_to_others(dims, kinds, 0, distance, scratch);
+    EXPECT_THAT(distance, testing::Each(distance_reach));  // the outside does not limit it
+    kinds[0] = 1;
+    distance_to_others(dims, kinds, 0, distance, scratch);
     EXPECT_EQ(distance[30], 30);
     EXPECT_EQ(distance[31], 31);
     EXPECT_EQ(distance[32], 31);
     EXPECT_EQ(distance[99], 31);
-    std::fill(occupied.begin(), occupied.end(), std::uint8_t{1});
-    signed_distance(dims, occupied, distance, scratch);
-    EXPECT_THAT(distance, testing::Each(-distance_reach));  // the outside does not limit it
 }
 
-TEST(SignedDistance, allocates_nothing_the_second_time) {
+TEST(DistanceToOthers, allocates_nothing_the_second_time) {
     const glm::ivec3 dims(20, 10, 10);
-    const std::vector<std::uint8_t> occupied(count_of(dims), 1);
+    const std::vector<std::uint8_t> kinds(count_of(dims), 1);
     DistanceScratch scratch;
-    std::vector<std::int8_t> distance;
-    signed_distance(dims, occupied, distance, scratch);
+    std::vector<std::uint8_t> distance;
+    distance_to_others(dims, kinds, 1, distance, scratch);
     const auto where = [&] {
-        return std::array<const void*, 4>{scratch.to_occupied.data(), scratch.to_empty.data(),
-                                          scratch.row.data(), distance.data()};
+        return std::array<const void*, 3>{scratch.grid.data(), scratch.row.data(), distance.data()};
     };
     const auto before = where();
-    signed_distance(dims, occupied, distance, scratch);
+    distance_to_others(dims, kinds, 1, distance, scratch);
     EXPECT_EQ(where(), before);
 }
 
-TEST(SignedDistance, refuses_another_size) {
+TEST(DistanceToOthers, refuses_another_size) {
     DistanceScratch scratch;
-    std::vector<std::int8_t> distance;
-    EXPECT_THROW(signed_distance({2, 2, 2}, std::vector<std::uint8_t>(7), distance, scratch), Error);
-    EXPECT_NO_THROW(signed_distance({0, 2, 2}, {}, distance, scratch));
+    std::vector<std::uint8_t> distance;
+    EXPECT_THROW(distance_to_others({2, 2, 2}, std::vector<std::uint8_t>(7), 0, distance, scratch), Error);
+    EXPECT_NO_THROW(distance_to_others({0, 2, 2}, {}, 0, distance, scratch));
     EXPECT_TRUE(distance.empty());
 }
 

@@ -242,6 +242,47 @@ TEST(StoredRanges, AreNoWiderThanTheyMustBe) {
     EXPECT_EQ(all[0].high, std::numeric_limits<float>::infinity());
 }
 
+TEST(StoredRanges, OfATableHoldAllThatItsNearestEntryShows) {
+    std::mt19937 random(29);
+    const TexelMap stored_of_texel{65535.0, -32768.0};
+    const TexelRange range{0.25, 0.3125};
+    for (int round = 0; round < 40; ++round) {
+        const TransferFunction f = random_function(random, 0.0, 1.0);
+        const TexelMap map{1.0 / (range.high - range.low), -range.low / (range.high - range.low)};
+        const ClassificationTable table = tabulate(extinction_knots(f, map, range), range, 64);
+        const std::vector<StoredRange> ranges = stored_ranges(table, range, stored_of_texel);
+        int hidden = 0;
+        int left_out = 0;
+        for (int i = 0; i <= 5000; ++i) {
+            // In float, as the shader does, and a little beside.
+            const auto texel = static_cast<float>(range.low + (range.high - range.low) * i / 5000.0);
+            const float place = texel * static_cast<float>(table.place.x) + static_cast<float>(table.place.y);
+            const auto entry = static_cast<std::size_t>(std::clamp(place, 0.0F, 63.0F) + 0.5F);
+            const bool seen = table.entries[entry].a > 0.0F;
+            const bool held =
+                inside(ranges, static_cast<float>(stored_of_texel.value_of(static_cast<double>(texel))));
+            EXPECT_TRUE(held || !seen) << texel;
+            hidden += seen ? 0 : 1;
+            left_out += held ? 0 : 1;
+        }
+        EXPECT_GE(left_out, hidden * 9 / 10);
+    }
+}
+
+TEST(StoredRanges, OfATableLeaveOutABackgroundAtAKnot) {
+    // Air that is the least value of a CT, where opacity begins to rise.
+    const TransferFunction f = function_of({point(-1000.0, 0.0), point(500.0, 0.4)});
+    const TexelMap map{65535.0, -32768.0};
+    const TexelRange range{static_cast<double>(static_cast<float>(map.texel_of(-1000.0))),
+                           static_cast<double>(static_cast<float>(map.texel_of(2400.0)))};
+    const std::vector<StoredRange> ranges =
+        stored_ranges(tabulate(extinction_knots(f, map, range), range), range, map);
+    ASSERT_EQ(ranges.size(), 1U);
+    EXPECT_GT(ranges[0].low, -1000.0F);
+    EXPECT_LT(ranges[0].low, -999.0F);
+    EXPECT_LE(stored_ranges(f, {}, {-1000.0, 2400.0})[0].low, -1000.0F);
+}
+
 TEST(Opacity, OfALengthIsThatOfItsParts) {
     for (const double opacity : {0.0, 0.01, 0.4, 0.99}) {
         const double sigma = extinction(opacity, 2.0);
