@@ -20,13 +20,16 @@ void MixedParams::visit(ParamVisitor& v) {
             pass);
     v.field(
         {.name = "tolerance",
-         .doc = "Where the coarse picture bends by more than this, in colour or opacity, from one of its "
-                "pixels to the next, the ray is cast (fine); about what linear interpolation would err by.",
+         .doc =
+             "Tiles of 4 x 4 pixels in which the coarse picture bends by this or more, in colour or opacity, "
+             "from one of its "
+             "pixels to the next, are cast (fine); about what linear interpolation would err by. 0: all are.",
          .min = 0.0},
         tolerance);
     v.field({.name = "depth_tolerance_mm",
-             .doc = "Where the depth of surfaces is not that interpolated from the coarse picture's by more "
-                    "than this, the ray is cast (fine).",
+             .doc = "Tiles in which the depth of surfaces differs by more than this from that interpolated "
+                    "from neighbours and from the coarse picture's "
+                    "pixels are cast (fine).",
              .unit = "mm",
              .min = 0.0},
             depth_tolerance_mm);
@@ -36,8 +39,34 @@ int lattice_line(int texel, int texels, int lines) {
     return (2 * texel + 1) * lines / (2 * texels);
 }
 
-bool can_fill(glm::ivec2 coarse, glm::ivec2 lattice) {
-    return coarse.x >= 4 && coarse.y >= 4 && coarse.x <= lattice.x && coarse.y <= lattice.y;
+bool can_fill(glm::ivec2 coarse, glm::ivec2 lattice, glm::ivec2 size) {
+    const glm::ivec2 most = glm::min(lattice, size);
+    return coarse.x >= 4 && coarse.y >= 4 && coarse.x <= most.x && coarse.y <= most.y;
+}
+
+void MixedPlan::draw(const Pass& pass, const gl::Program& program, bool compute) {
+    const glm::ivec2 tiles = (pass.size() + tile_size - 1) / tile_size;
+    GLint target = 0;  // of this pass; what follows binds others
+    pass.gl().GetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &target);
+    if (!tiles_ || tiles_->width() != tiles.x || tiles_->height() != tiles.y) {
+        target_.reset();
+        tiles_ = gl::Texture::make_2d(pass.gl(), tiles.x, tiles.y, PixelFormat::r8, "plan of tiles");
+        target_.emplace(pass.gl(), *tiles_, "plan of tiles");
+    }
+    if (compute) {
+        pass.dispatch(program, *tiles_);
+    } else {
+        target_->bind();
+        gl::apply(pass.gl(), gl::overwrite_state, {0, 0, tiles.x, tiles.y});
+        pass.draw_generated(GL_TRIANGLES, 3, 1);
+    }
+    pass.gl().BindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(target));
+    pass.raster(gl::overwrite_state);
+}
+
+void MixedPlan::draw_tiles(const Pass& pass) const {
+    pass.raster({.program_point_size = true});
+    pass.draw_generated(GL_POINTS, tiles_->width() * tiles_->height(), 1);
 }
 
 }  // namespace viscera::volume

@@ -6,7 +6,6 @@
 
 #include "effects/volume/crop.h"
 #include "effects/volume/prefilter.h"
-#include "effects/volume/ray_frame.h"
 #include "engine/core/error.h"
 #include "engine/core/hash.h"
 #include "engine/core/log.h"
@@ -248,7 +247,7 @@ Work RayCastEffect::prepare(Prepare& prepare) {
     variant_.inner =
         params_.sampling.limits == Limits::mesh && prepare.has("inner_entry") && prepare.has("inner_exit");
     variant_.fills = params_.mixed && prepare.has("coarse") &&
-                     can_fill(prepare.size("coarse"), lattice_of(prepare.frame(), depth_size_));
+                     can_fill(prepare.size("coarse"), lattice_of(prepare.frame(), depth_size_), size);
     if (params_.sampling.limits != Limits::analytic && !prepare.has("exit")) {
         return Work::idle("what limits the rays is not in the view");
     }
@@ -271,16 +270,6 @@ Work RayCastEffect::prepare(Prepare& prepare) {
     return variant_.background || region == PixelRect{0, 0, size.x, size.y}
                ? Work::all(key)
                : Work::in_region(region, "only where the volume can be seen", key);
-}
-
-/// The full picture's size in pixels, of which a coarse one holds some: that of the surfaces' depth, so that
-/// rays end where it is known. Both passes find the same.
-glm::ivec2 RayCastEffect::lattice_of(const Frame& frame, glm::ivec2 depth) {
-    if (depth.x > 0) {
-        return depth;
-    }
-    const double share = frame.quality.resolution;
-    return glm::max(glm::ivec2(glm::round(share * glm::dvec2(frame.width, frame.height))), 1);
 }
 
 void RayCastEffect::bind_blue_noise(const Pass& pass, const gl::Program& program) {
@@ -323,25 +312,20 @@ void RayCastEffect::draw(const Pass& pass) {
         skip_map_.occupancy() > compute_skips_below) {
         variant_.skipping = Skipping::none;
     }
+    const RayFrame frame = make_ray_frame(pass.frame().eye(), space_.local_to_world, space_.low, space_.high);
+    if (variant_.fills) {
+        fill_in(pass, frame);
+    }
     const auto variant = std::ranges::find(variants_, variant_);
     const gl::Program& program = pass.use(static_cast<std::size_t>(variant - variants_.begin()));
-    const RayFrame frame = make_ray_frame(pass.frame().eye(), space_.local_to_world, space_.low, space_.high);
-    const glm::ivec2 lattice = lattice_of(pass.frame(), depth_size_);
-    program.set("u_pixel", 2.0F / glm::vec2(is_coarse() ? lattice : pass.size()));
-    program.set("u_lattice", lattice);
-    program.set("u_size", pass.size());
-    if (params_.sampling.fovea) {
-        params_.sampling.fovea->set(program, fovea_centre_, is_coarse() ? lattice : pass.size());
-    }
+    set_picture(pass, frame, program);
     if (variant_.fills) {
-        program.set("u_coarse_tolerance", static_cast<float>(params_.mixed->tolerance));
-        program.set("u_coarse_depth_tolerance", static_cast<float>(params_.mixed->depth_tolerance_mm));
-        pass.bind(program, "u_coarse", "coarse");
+        pass.bind(program, "u_plan", plan_.tiles(), gl::Filter::nearest);
     }
-    program.set("u_point", std::span<const glm::vec3>(frame.point));
-    program.set("u_direction", std::span<const glm::vec3>(frame.direction));
-    program.set("u_world_direction", std::span<const glm::vec3>(frame.world_direction));
-    program.set("u_near_far", frame.near_far);
+    if (params_.sampling.fovea) {
+        params_.sampling.fovea->set(program, fovea_centre_,
+                                    is_coarse() ? lattice_of(pass.frame(), depth_size_) : pass.size());
+    }
     set_coordinates(program, space_, box_min_, box_max_);
     program.set("u_slab", static_cast<float>(lattice_.slab_mm));
     program.set("u_slab_limit", lattice_.slab_limit);
@@ -395,13 +379,6 @@ void RayCastEffect::draw(const Pass& pass) {
                     glm::vec3(glm::dvec3(volume.grid.dims) / static_cast<double>(brick_size)));
         pass.bind(program, "u_bricks", skip_map_.texture(pass.gl()), gl::Filter::nearest);
     }
-    if (variant_.surface) {
-        program.set("u_depth_to_share", frame.depth_to_share);
-        pass.bind(program, "u_depth", "depth");
-    }
-    if (variant_.background) {
-        pass.bind(program, "u_background", "background");
-    }
     if (params_.sampling.limits != Limits::analytic) {
         pass.bind(program, "u_entry", "entry");
         pass.bind(program, "u_exit", "exit");
@@ -410,10 +387,10 @@ void RayCastEffect::draw(const Pass& pass) {
         pass.bind(program, "u_inner_entry", "inner_entry");
         pass.bind(program, "u_inner_exit", "inner_exit");
     }
-    if (variant_.compute) {
-        pass.dispatch(program, "colour");
+    if (variant_.fills && !variant_.compute) {
+        plan_.draw_tiles(pass);
     } else {
-        pass.draw_fullscreen();
+        cover(pass, program);
     }
 }
 

@@ -6,6 +6,7 @@
 
 #include "effects/volume/gpu_volume.h"
 #include "effects/volume/ray_cast_params.h"
+#include "effects/volume/ray_frame.h"
 #include "effects/volume/skip_map.h"
 #include "effects/volume/slab_texture.h"
 #include "engine/core/mesh_data.h"
@@ -56,6 +57,9 @@ class RayCastEffect final : public Effect {
 
     [[nodiscard]] bool is_coarse() const { return params_.mixed && params_.mixed->pass == MixedPass::coarse; }
     [[nodiscard]] static glm::ivec2 lattice_of(const Frame& frame, glm::ivec2 depth);
+    void set_picture(const Pass& pass, const RayFrame& frame, const gl::Program& program) const;
+    void fill_in(const Pass& pass, const RayFrame& frame);
+    void cover(const Pass& pass, const gl::Program& program) const;
     void find_crop();
     void bind_blue_noise(const Pass& pass, const gl::Program& program);
 
@@ -83,6 +87,7 @@ class RayCastEffect final : public Effect {
     glm::ivec2 depth_size_{0};      ///< [pixels]; 0: there is no depth
     Look look_;
     std::shared_ptr<const gl::Texture> blue_noise_;
+    MixedPlan plan_;
     std::optional<SlabTexture> slabs_;  ///< preintegrated only
     std::optional<gl::Texture> table_;
     std::uint64_t table_key_ = 0;

@@ -91,6 +91,9 @@ std::span<const ProgramDesc> RayCastEffect::programs() const {
                 programs_.back() = {"", "", programs_[i].defines, "volume/ray_cast.comp"};
             } else {
                 programs_.back().defines.emplace_back(define);
+                if (what == &Variant::fills) {
+                    programs_.back().vertex = "volume/mixed_tiles.vert";
+                }
             }
         }
     };
@@ -120,6 +123,21 @@ std::span<const ProgramDesc> RayCastEffect::programs() const {
         again(&Variant::atlas, "STORAGE_ATLAS");
     }
     again(&Variant::compute, "");
+    if (params_.mixed && params_.mixed->pass == MixedPass::fine) {
+        // What else such a pass draws, in the order in which mixed_program() counts.
+        for (const auto& [file, define] :
+             {std::pair{"volume/mixed_plan", "SURFACE"}, {"volume/mixed_fill", "BACKGROUND"}}) {
+            for (const bool given : {false, true}) {
+                const std::string name(file);
+                std::vector<std::string> defines;
+                if (given) {
+                    defines.emplace_back(define);
+                }
+                programs_.push_back({"common/fullscreen.vert", name + ".frag", defines});
+                programs_.push_back({"", "", defines, name + ".comp"});
+            }
+        }
+    }
     return programs_;
 }
 

@@ -73,12 +73,22 @@ bool Pass::compute(std::string_view port) const {
 }
 
 void Pass::dispatch(const gl::Program& program, std::string_view port) const {
-    const gl::Texture& target = *std::ranges::find(outputs_, port, &Output::port)->texture;
+    dispatch(program, *std::ranges::find(outputs_, port, &Output::port)->texture, rects());
+    dispatched_ = true;
+}
+
+void Pass::dispatch(const gl::Program& program, const gl::Texture& target) const {
+    const PixelRect all{0, 0, target.width(), target.height()};
+    dispatch(program, target, std::span(&all, 1));
+}
+
+void Pass::dispatch(const gl::Program& program, const gl::Texture& target,
+                    std::span<const PixelRect> rects) const {
     const gl::Functions& gl = shared_.gl;
     const auto groups = [](int pixels, int size) { return static_cast<GLuint>((pixels + size - 1) / size); };
     const glm::ivec3 size = program.group_size();
     gl.BindImageTexture(gl::image_unit, target.id(), 0, GL_FALSE, 0, GL_WRITE_ONLY, target.format().internal);
-    for (const PixelRect& rect : rects()) {
+    for (const PixelRect& rect : rects) {
         program.set("u_region", glm::ivec4(rect.x, rect.y, rect.width, rect.height));
         gl.DispatchCompute(groups(rect.width, size.x), groups(rect.height, size.y), 1);
     }
@@ -86,7 +96,6 @@ void Pass::dispatch(const gl::Program& program, std::string_view port) const {
     gl.MemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT | GL_PIXEL_BUFFER_BARRIER_BIT |
                      GL_TEXTURE_UPDATE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
     gl.BindImageTexture(gl::image_unit, 0, 0, GL_FALSE, 0, GL_READ_ONLY, GL_R8);
-    dispatched_ = true;
 }
 
 }  // namespace viscera

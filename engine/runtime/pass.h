@@ -100,10 +100,15 @@ class Pass {
     /// shader gets the target as image unit 0 and a rectangle as `uniform ivec4 u_region` (x, y, width,
     /// height): glsl/common/compute.glsl. Only after compute(port) said yes.
     void dispatch(const gl::Program& program, std::string_view port) const;
+    /// The same for all of a texture of the effect's own, in a pass that may use compute shaders.
+    void dispatch(const gl::Program& program, const gl::Texture& target) const;
     /// Whether dispatch() has been called.
     [[nodiscard]] bool dispatched() const { return dispatched_; }
 
   private:
+    void dispatch(const gl::Program& program, const gl::Texture& target,
+                  std::span<const PixelRect> rects) const;
+
     const Shared& shared_;
     const Frame& frame_;
     std::span<ShaderLibrary::Entry* const> programs_;

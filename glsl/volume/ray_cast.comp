@@ -5,7 +5,11 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 void main() {
     ivec2 pixel;
-    if (own_pixel(pixel)) {
+    bool wanted = own_pixel(pixel);
+#ifdef MIXED_FINE
+    wanted = wanted && is_cast(pixel);
+#endif
+    if (wanted) {
         imageStore(u_target, pixel, cast_ray(vec2(pixel) + 0.5));
     }
 }

@@ -52,8 +52,11 @@
 #include "volume/jitter.glsl"
 #endif
 #include "volume/picture.glsl"
-#if defined(MIXED_COARSE) || defined(MIXED_FINE)
-#include "volume/mixed.glsl"
+#ifdef MIXED_COARSE
+#include "volume/mixed_lattice.glsl"
+#endif
+#ifdef MIXED_FINE
+#include "volume/mixed_choice.glsl"
 #endif
 #ifdef LIMITS
 #include "volume/limits.glsl"
@@ -71,11 +74,6 @@ vec4 cast_ray(vec2 pixel) {
     pixel = lattice_pixel(pixel);
 #endif
     Ray ray = pixel_ray(pixel);
-#ifdef MIXED_FINE
-    vec4 from_coarse;
-    bool is_filled = filled_in(ray, pixel, from_coarse);
-    ray.far = is_filled ? ray.near : ray.far;
-#endif
 #ifdef SURFACE
     ray.far = min(ray.far, surface_along(ray, pixel));
 #endif
@@ -118,9 +116,6 @@ vec4 cast_ray(vec2 pixel) {
     }
     // What misses the volume is left as it was, also where an X-ray would say that nothing was absorbed.
     vec4 seen = met ? finish(state) : vec4(0.0);
-#ifdef MIXED_FINE
-    seen = is_filled ? from_coarse : seen;
-#endif
 #ifdef BACKGROUND
     return over_background(seen, pixel);
 #else

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 
 namespace viscera::reference {
 namespace {
@@ -11,21 +12,36 @@ struct Axis {
     std::array<int, 4> texels{};
     std::array<double, 4> cubic{};
     std::array<double, 4> linear{};
-    std::array<double, 4> lines{};
-    std::size_t left =
-        0;  ///< of the two texels next to the pixel, the one before it: an index into the above
-    double between = 0.0;  ///< 0 on a texel, 1 midway
     bool copied = false;
-
-    /// Second derivative at texel i + 1 by divided differences, times the squared distance of the two next to
-    /// the pixel.
-    [[nodiscard]] double bend(const std::array<double, 4>& values, std::size_t i) const {
-        const double unit = lines[left + 1] - lines[left];
-        const double rise = (values[i + 1] - values[i]) / (lines[i + 1] - lines[i]);
-        const double next = (values[i + 2] - values[i + 1]) / (lines[i + 2] - lines[i + 1]);
-        return 2.0 * unit * unit * (next - rise) / (lines[i + 2] - lines[i]);
-    }
 };
+
+/// The texels next to the pixels of a tile along one axis, moved to where they have two neighbours.
+std::set<int> corners(int tile, int n, int lines) {
+    std::set<int> found;
+    const int end = std::min((tile + 1) * MixedPicture::tile_size, lines);
+    for (int pixel = tile * MixedPicture::tile_size; pixel < end; ++pixel) {
+        for (int texel = 0; texel < n; ++texel) {
+            const int line = MixedPicture::line_of(texel, n, lines);
+            const bool last_before =
+                line <= pixel && (texel + 1 == n || MixedPicture::line_of(texel + 1, n, lines) > pixel);
+            const bool first_after =
+                line > pixel && texel > 0 && MixedPicture::line_of(texel - 1, n, lines) < pixel;
+            if (last_before || first_after) {
+                found.insert(std::clamp(texel, 1, n - 2));
+            }
+        }
+    }
+    return found;
+}
+
+/// Second derivative at the middle one of three places, times the squared wider distance; 0 where there is no
+/// pixel between them.
+double second_difference(const std::array<double, 3>& at, const std::array<double, 3>& value) {
+    const double unit = std::max(at[1] - at[0], at[2] - at[1]);
+    const double rise = (value[1] - value[0]) / (at[1] - at[0]);
+    const double next = (value[2] - value[1]) / (at[2] - at[1]);
+    return unit > 1.0 ? 2.0 * unit * unit * (next - rise) / (at[2] - at[0]) : 0.0;
+}
 
 std::optional<Axis> axis_of(int pixel, int n, int lines) {
     const auto line = [&](int texel) { return MixedPicture::line_of(texel, n, lines); };
@@ -50,11 +66,6 @@ std::optional<Axis> axis_of(int pixel, int n, int lines) {
         axis.copied = axis.copied || pixel == line(first + i);
     }
     const double share = static_cast<double>(pixel - line(left)) / (line(left + 1) - line(left));
-    axis.left = static_cast<std::size_t>(left - first);
-    axis.between = 4.0 * share * (1.0 - share);
-    for (int i = 0; i < 4; ++i) {
-        axis.lines[static_cast<std::size_t>(i)] = line(first + i);
-    }
     axis.linear[static_cast<std::size_t>(left - first)] = 1.0 - share;
     axis.linear[static_cast<std::size_t>(left - first + 1)] = share;
     return axis;
@@ -91,26 +102,45 @@ std::optional<MixedPicture::Filled> MixedPicture::at(int x, int y) const {
             }
         }
     }
-    for (int c = 0; c < 4; ++c) {
-        const auto texel = [&](std::size_t i, std::size_t j) {
-            return static_cast<double>(coarse_.at(across->texels[i], up->texels[j], c));
-        };
-        double bend = 0.0;
-        for (std::size_t k = 0; k < 4; ++k) {
-            const std::array<double, 4> row{texel(0, k), texel(1, k), texel(2, k), texel(3, k)};
-            const std::array<double, 4> column{texel(k, 0), texel(k, 1), texel(k, 2), texel(k, 3)};
-            bend += across->between * up->linear[k] *
-                    (std::abs(across->bend(row, 0)) + std::abs(across->bend(row, 1)));
-            bend += up->between * across->linear[k] *
-                    (std::abs(up->bend(column, 0)) + std::abs(up->bend(column, 1)));
-        }
-        filled.bend = std::max(filled.bend, bend / 16.0);
-    }
     if (depth_ != nullptr) {
         const double own = depth_->at(x, y, 0);
         filled.depth_gap = std::max(std::abs(depth_cubic - own), std::abs(depth_linear - own));
+        if (x > 0 && x + 1 < lattice_.x) {
+            const double mean =
+                0.5 * (static_cast<double>(depth_->at(x - 1, y, 0)) + depth_->at(x + 1, y, 0));
+            filled.depth_gap = std::max(filled.depth_gap, std::abs(mean - own));
+        }
+        if (y > 0 && y + 1 < lattice_.y) {
+            const double mean =
+                0.5 * (static_cast<double>(depth_->at(x, y - 1, 0)) + depth_->at(x, y + 1, 0));
+            filled.depth_gap = std::max(filled.depth_gap, std::abs(mean - own));
+        }
     }
     return filled;
+}
+
+double MixedPicture::bend(int x, int y) const {
+    double most = 0.0;
+    for (const int i : corners(x, coarse_.width, lattice_.x)) {
+        for (const int j : corners(y, coarse_.height, lattice_.y)) {
+            for (int c = 0; c < 4; ++c) {
+                std::array<double, 3> columns{};
+                std::array<double, 3> rows{};
+                std::array<double, 3> across{};
+                std::array<double, 3> up{};
+                for (int k = 0; k < 3; ++k) {
+                    const auto slot = static_cast<std::size_t>(k);
+                    columns[slot] = line_of(i + k - 1, coarse_.width, lattice_.x);
+                    rows[slot] = line_of(j + k - 1, coarse_.height, lattice_.y);
+                    across[slot] = coarse_.at(i + k - 1, j, c);
+                    up[slot] = coarse_.at(i, j + k - 1, c);
+                }
+                most = std::max(most, std::abs(second_difference(columns, across)) +
+                                          std::abs(second_difference(rows, up)));
+            }
+        }
+    }
+    return most / 8.0;
 }
 
 }  // namespace viscera::reference

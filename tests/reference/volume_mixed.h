@@ -17,17 +17,21 @@ class MixedPicture {
     MixedPicture(const Image& coarse, glm::ivec2 lattice, const Image* depth)
         : coarse_(coarse), lattice_(lattice), depth_(depth) {}
 
+    static constexpr int tile_size = 4;  ///< [pixels]
+
     struct Filled {
-        glm::dvec4 colour{0.0};   ///< not limited to [0, 1]
-        /// How much the coarse picture bends here: the second differences at the two texels between which the
-        /// pixel lies, their amounts added, along rows and along columns, over 16. As large as the gap of
-        /// cubic and line where both have one sign.
-        double bend = 0.0;
-        double depth_gap = 0.0;   ///< of the pixel's depth against both, in depth units
-        bool copied = false;      ///< the pixel is one of the coarse picture's
+        glm::dvec4 colour{0.0};  ///< not limited to [0, 1]
+        /// Of the pixel's depth against the cubic and the line between those of the coarse picture's pixels,
+        /// and against the mean of its neighbours on either side, in depth units.
+        double depth_gap = 0.0;
+        bool copied = false;  ///< the pixel is one of the coarse picture's
     };
     /// None outside the pixels that the coarse picture has.
     [[nodiscard]] std::optional<Filled> at(int x, int y) const;
+
+    /// How much the coarse picture bends, at most, at the texels about the pixels of a tile: the amounts of
+    /// the second differences along rows and columns, over 8. `x`, `y`: of the tile.
+    [[nodiscard]] double bend(int x, int y) const;
 
     /// The pixel of a texel along one axis of n texels and `lines` pixels: the one whose area holds the
     /// texel's middle.

@@ -56,31 +56,70 @@ TEST_P(Fovea, EachRegionHasItsStepsPicture) {
     EXPECT_GT(beyond, 300U);
 }
 
+TEST_P(Fovea, EachRayHasTheStepOfItsPlace) {
+    // Looked up without jumps, so that a step that is rounded otherwise moves samples and nothing else.
+    const auto shown = [&](const json& sampling) {
+        json scene = scene_with(sampling);
+        scene["passes"].back()["parameters"]["transfer_function"]["interpolate"] = true;
+        return mixed_shot(stage_, scene, volume_);
+    };
+    const Image got =
+        shown({{"step", 0.5}, {"fovea", {{"radius", 0.1}, {"outer_radius", 0.45}, {"step_factor", 4}}}});
+    std::size_t compared = 0;
+    for (const int x : {60, 64, 68, 71, 74}) {
+        const int y = 52;
+        const double t = std::clamp((away(x, y, {0.5, 0.5}) - 0.1) / 0.35, 0.0, 1.0);
+        const double factor = 1.0 + 3.0 * t * t * (3.0 - 2.0 * t);
+        const Image everywhere = shown({{"step", 0.5 * factor}});
+        for (int c = 0; c < 4; ++c) {
+            // Steps differ by 2^-22, so that samples move by 2^-22 of 250 mm at most. No colour or opacity of
+            // the shells changes by more than 0.15 per mm.
+            EXPECT_NEAR(got.at(x, y, c), everywhere.at(x, y, c), 0.15 * 250.0 / 4194304.0)
+                << x << ", " << factor;
+        }
+        compared += got.at(x, y, 3) > 0.1F ? 1 : 0;
+    }
+    EXPECT_GE(compared, 3U);
+}
+
 TEST_P(Fovea, NoRingIsSeen) {
-    const json fovea{{"radius", 0.12}, {"outer_radius", 0.3}, {"step_factor", 4}};
-    const Image fine = shot({{"step", 0.25}});
-    // How much the error of a picture changes from a pixel to the next, at most.
-    const auto worst_step = [&](const Image& got) {
-        double worst = 0.0;
-        const auto error = [&](int x, int y, int c) {
-            return static_cast<double>(got.at(x, y, c)) - static_cast<double>(fine.at(x, y, c));
+    // Longer steps err by this or that from pixel to pixel, as they do everywhere. A ring is what all pixels
+    // of a circle have in common: that they err otherwise than they would with the step of the next circle.
+    const auto worst_ring = [&](double radius, double outer_radius, double factor) {
+        const double pixel = 1.0 / side;
+        const auto with = [&](double by) {
+            return shot(
+                {{"step", 0.25},
+                 {"fovea",
+                  {{"radius", radius + by}, {"outer_radius", outer_radius + by}, {"step_factor", factor}}}});
         };
-        for (int y = 0; y + 1 < side; ++y) {
-            for (int x = 0; x + 1 < side; ++x) {
+        const Image here = with(0.0);
+        const Image next = with(pixel);
+        std::array<std::array<double, 4>, side> sums{};
+        std::array<int, side> counts{};
+        for (int y = 0; y < side; ++y) {
+            for (int x = 0; x < side; ++x) {
+                const auto circle = static_cast<std::size_t>(away(x, y, {0.5, 0.5}) * side);
+                ++counts.at(circle);
                 for (int c = 0; c < 4; ++c) {
-                    worst = std::max({worst, std::abs(error(x + 1, y, c) - error(x, y, c)),
-                                      std::abs(error(x, y + 1, c) - error(x, y, c))});
+                    sums.at(circle).at(static_cast<std::size_t>(c)) +=
+                        static_cast<double>(here.at(x, y, c)) - static_cast<double>(next.at(x, y, c));
                 }
+            }
+        }
+        double worst = 0.0;
+        for (std::size_t circle = 5; circle < side / 2; ++circle) {
+            for (const double sum : sums.at(circle)) {
+                worst = std::max(worst, std::abs(sum) / counts.at(circle));
             }
         }
         return worst;
     };
-    // That steps change adds nothing to what the longer step errs by everywhere.
-    const double coarse = worst_step(shot({{"step", 1.0}}));
-    const double foveated = worst_step(shot({{"step", 0.25}, {"fovea", fovea}}));
-    EXPECT_LT(foveated, 1.2 * coarse);
-    EXPECT_LT(foveated, 0.02);
-    EXPECT_GT(foveated, 0.0) << "steps were to be longer somewhere";
+    const double step_of_a_screen = 1.0 / 255.0;
+    EXPECT_LT(worst_ring(0.12, 0.3, 4), step_of_a_screen);
+    EXPECT_LT(worst_ring(0.1, 0.4, 16), step_of_a_screen);
+    EXPECT_GT(worst_ring(0.1, 0.1 + 1e-6, 16), step_of_a_screen) << "without a transition a ring is seen";
+    EXPECT_GT(worst_ring(0.2, 0.2 + 1e-6, 16), step_of_a_screen);
 }
 
 TEST_P(Fovea, SkippingChangesNothing) {
