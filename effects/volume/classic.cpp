@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "engine/core/error.h"
+
 namespace viscera::volume {
 
 void AccumulateParams::visit(ParamVisitor& v) {
@@ -17,6 +19,28 @@ void AccumulateParams::visit(ParamVisitor& v) {
              .min = 0.0,
              .max = 1.0},
             threshold);
+    v.field(
+        {.name = "channels",
+         .doc = "Takes the volume's colours as they are, one entry for each of its 2 to 4 channels: grey and "
+                "opacity; red, green and blue, whose mean is the opacity; or these and opacity."},
+        channels);
+}
+
+void AccumulateParams::Channel::visit(ParamVisitor& v) {
+    v.field(
+        {.name = "threshold",
+         .doc = "Least and greatest value that is shown, as shares of the range of all channels; what leaves "
+                "that of any channel is dropped.",
+         .min = 0.0,
+         .max = 1.0},
+        threshold);
+}
+
+void AccumulateParams::validate() const {
+    if (channels.size() == 1 || channels.size() > 4) {
+        throw Error(ErrorCode::scene, "/accumulate/channels",
+                    "colours have 2, 3 or 4 channels; volume.channel names a single one");
+    }
 }
 
 void DensityParams::visit(ParamVisitor& v) {

@@ -63,7 +63,30 @@ gl::Extent extent(const glm::ivec3& v) {
     return {v.x, v.y, v.z};
 }
 
-gl::TextureFormat format_of(ScalarType type) {
+std::vector<std::byte> all_of(const Volume& volume, const VoxelBox& box) {
+    const glm::ivec3 dims = volume.grid.dims;
+    const std::size_t voxel = static_cast<std::size_t>(volume.channels) * bytes_of(volume.type);
+    const std::size_t run = static_cast<std::size_t>(box.size.x) * voxel;
+    std::vector<std::byte> result(run * static_cast<std::size_t>(box.size.y) *
+                                  static_cast<std::size_t>(box.size.z));
+    std::byte* to = result.data();
+    for (int z = box.first.z; z < box.first.z + box.size.z; ++z) {
+        for (int y = box.first.y; y < box.first.y + box.size.y; ++y) {
+            const std::size_t row =
+                static_cast<std::size_t>(z) * static_cast<std::size_t>(dims.y) + static_cast<std::size_t>(y);
+            const std::size_t first =
+                row * static_cast<std::size_t>(dims.x) + static_cast<std::size_t>(box.first.x);
+            std::memcpy(to, volume.voxels.data() + first * voxel, run);
+            to += run;
+        }
+    }
+    return result;
+}
+
+gl::TextureFormat format_of(ScalarType type, int channel) {
+    if (channel == all_channels) {
+        return gl::rgba16_format;
+    }
     return type == ScalarType::f32 ? gl::texture_format(PixelFormat::r32f) : gl::r16_format;
 }
 
@@ -144,6 +167,9 @@ TexelMap texel_map(ScalarType type) {
 }
 
 std::vector<std::byte> texels(const Volume& volume, int channel, const VoxelBox& box, double empty) {
+    if (channel == all_channels) {
+        return all_of(volume, box);
+    }
     switch (volume.type) {
         case ScalarType::u8:
             return as_unorm16<std::uint8_t>(volume, channel, box);
@@ -192,7 +218,7 @@ GpuVolume::GpuVolume(const gl::Functions& gl, const Source& source, int channel,
 gl::Texture GpuVolume::make_texture(const gl::Functions& gl, const Volume& volume) {
     const glm::ivec3 dims = volume.grid.dims;
     const auto atlas = choose_storage(dims, storage_, TextureLimits::query(gl), volume.source);
-    const gl::TextureFormat format = format_of(volume.type);
+    const gl::TextureFormat format = format_of(volume.type, channel_);
     gl::Texture texture =
         atlas ? gl::Texture::make_2d_array(gl, {atlas->page().x, atlas->page().y, atlas->layers}, format,
                                            volume.source)

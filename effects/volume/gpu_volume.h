@@ -13,8 +13,11 @@ namespace viscera::volume {
 /// some devices.
 [[nodiscard]] TexelMap texel_map(ScalarType type);
 
+/// Instead of a channel: all four of a u16 volume (effects/volume/colours.h).
+inline constexpr int all_channels = -1;
+
 /// The texels of one channel of a box as the texture wants them: 16-bit, or floats with `empty` (stored) for
-/// what is not finite.
+/// what is not finite. all_channels: as they are.
 [[nodiscard]] std::vector<std::byte> texels(const Volume& volume, int channel, const VoxelBox& box,
                                             double empty);
 
@@ -32,7 +35,7 @@ struct TextureLimits {
 [[nodiscard]] std::optional<AtlasLayout> choose_storage(const glm::ivec3& dims, Storage storage,
                                                         const TextureLimits& limits, std::string_view where);
 
-/// One channel of a volume on the GPU, as glsl/volume/storage.glsl reads it.
+/// One channel of a volume, or all of them, on the GPU, as glsl/volume/storage.glsl reads it.
 class GpuVolume {
   public:
     /// Throws Error(limit) as choose_storage(), or when memory is short.

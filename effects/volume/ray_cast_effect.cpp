@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "effects/volume/colours.h"
 #include "effects/volume/crop.h"
 #include "effects/volume/prefilter.h"
 #include "engine/core/error.h"
@@ -56,6 +57,8 @@ void RayCastEffect::validate() const {
                     "at most " + std::to_string(most_iso_values) + " surfaces");
     }
     params_.look.validate();
+    params_.accumulate.validate();
+    check_colours();
     if (params_.sampling.fovea) {
         params_.sampling.fovea->validate();
     }
@@ -71,6 +74,47 @@ void RayCastEffect::check_kind() const {
             ErrorCode::scene, "/sampling/scheme",
             "cell goes from face to face of straight cells; those of a curvilinear volume are curved");
     }
+}
+
+/// Throws Error(scene) for what takes a value and not a colour.
+void RayCastEffect::check_colours() const {
+    if (!shows_colours()) {
+        return;
+    }
+    const auto refuse = [](bool asked, const char* key, const char* what) {
+        if (asked) {
+            throw Error(ErrorCode::scene, key,
+                        std::string(what) + " a value; accumulate.channels takes colours as they are");
+        }
+    };
+    refuse(params_.sampling.scheme == Scheme::preintegrated, "/sampling/scheme", "preintegrated needs");
+    refuse(params_.sampling.reconstruction.is_tricubic(), "/sampling/filter", "cubic filters need");
+    refuse(params_.look.shading.enabled.value_or(false), "/shading/enabled", "shading needs the gradient of");
+    refuse(params_.look.shading.light_volume.used(), "/shading/light_volume", "a light volume needs");
+    refuse(params_.look.labels.used(), "/labels", "labels need");
+    refuse(params_.look.overlay.used(), "/overlay", "an overlay needs");
+}
+
+void RayCastEffect::set_colours(const gl::Program& program) const {
+    const AccumulateParams& how = params_.accumulate;
+    glm::vec4 low(-1.0F);
+    glm::vec4 high(2.0F);
+    for (std::size_t c = 0; c < how.channels.size(); ++c) {
+        const glm::vec2 threshold(how.channels[c].threshold);
+        const auto texel = static_cast<int>(how.channels.size() == 2 && c == 1 ? 3 : c);
+        low[texel] = threshold.x;
+        high[texel] = threshold.y;
+    }
+    program.set("u_colour_low", low);
+    program.set("u_colour_high", high);
+    program.set("u_colour_opacity",
+                glm::vec2(glm::dvec2(how.opacity / how.samples, how.samples / diagonal_mm())));
+    program.set("u_colour_contrast", glm::vec2(glm::dvec2(how.brightness, how.contrast)));
+}
+
+/// Of the volume's box, before it is placed.
+double RayCastEffect::diagonal_mm() const {
+    return glm::length(glm::dvec3(source_->volume().grid.box_to_world() * glm::dvec4(1, 1, 1, 0)));
 }
 
 std::vector<Port> RayCastEffect::ports() const {
@@ -131,11 +175,9 @@ void RayCastEffect::find_function(Prepare& prepare) {
     if (wanted == RayFunction::density) {
         function_ = normalised(density_function(function_, params_.density), faults);
     } else if (wanted == RayFunction::accumulate) {
-        const glm::dmat4 box = source_->volume().grid.box_to_world();
-        function_ = normalised(
-            accumulate_function(params_.accumulate, source_->statistics.min, source_->statistics.max,
-                                glm::length(glm::dvec3(box * glm::dvec4(1, 1, 1, 0)))),
-            faults);
+        function_ = normalised(accumulate_function(params_.accumulate, source_->statistics.min,
+                                                   source_->statistics.max, diagonal_mm()),
+                               faults);
     }
     variant_.look = projects() ? Look::Variant{} : Look::variant(params_.look, function_);
 }
@@ -195,6 +237,11 @@ Work RayCastEffect::prepare(Prepare& prepare) {
     const bool coefficients = params_.sampling.reconstruction.uses_coefficients();
     sampled_channel_ = coefficients ? 0 : params_.volume.channel;
     sampled_ = coefficients ? load_coefficients(prepare.assets(), *source_, params_.volume.channel) : source_;
+    if (shows_colours()) {
+        sampled_channel_ = all_channels;
+        sampled_ =
+            load_colours(prepare.assets(), *source_, static_cast<int>(params_.accumulate.channels.size()));
+    }
     const Volume& volume = source_->volume();
     if (changed) {
         find_function(prepare);
@@ -204,7 +251,7 @@ Work RayCastEffect::prepare(Prepare& prepare) {
         parameters_key_ = prepare.parameters_key();  // only now: any of the above may fail or be cancelled
     }
     if (params_.transfer_function.empty() && variant_.function != RayFunction::xray &&
-        variant_.function != RayFunction::accumulate && variant_.function != RayFunction::isosurface) {
+        params_.function != RayFunction::accumulate && variant_.function != RayFunction::isosurface) {
         return Work::idle("there is no transfer function");
     }
     if (variant_.function == RayFunction::isosurface && params_.isosurface.values.empty()) {
@@ -364,6 +411,9 @@ void RayCastEffect::draw(const Pass& pass) {
     }
     if (!params_.look.clip_planes.empty()) {
         set_clips(program, params_.look.clip_planes, space_.local_to_world);
+    }
+    if (shows_colours()) {
+        set_colours(program);
     }
     if (!projects()) {
         look_.bind(params_.look, variant_.look,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -47,8 +48,15 @@ class RayCastEffect final : public Effect {
     [[nodiscard]] ClassificationTable table_of_texel(const TexelMap& stored_of_texel) const;
     void make_table(const gl::Functions& gl, const TexelMap& stored_of_texel);
     [[nodiscard]] TexelRange texel_range(const TexelMap& stored_of_texel) const;
+    [[nodiscard]] bool shows_colours() const {
+        return params_.function == RayFunction::accumulate && params_.accumulate.colours();
+    }
+    void check_colours() const;
+    [[nodiscard]] double diagonal_mm() const;
+    void set_colours(const gl::Program& program) const;
     [[nodiscard]] bool projects() const { return variant_.function != RayFunction::composite; }
     [[nodiscard]] std::vector<StoredRange> visible() const;
+    [[nodiscard]] std::vector<StoredRange> visible_colours() const;
     [[nodiscard]] SmoothRule smooth_rule() const;
     [[nodiscard]] bool find_bricks(Prepare& prepare);
     [[nodiscard]] Bounds seen_bounds(Bounds bounds) const;
@@ -73,9 +81,9 @@ class RayCastEffect final : public Effect {
     std::shared_ptr<const Source> sampled_;  ///< what the texture holds: the source or its coefficients
     int sampled_channel_ = 0;
     TransferFunction function_;
-    std::shared_ptr<Bricks> bricks_;
+    std::array<std::shared_ptr<Bricks>, 4> bricks_;  ///< of the channel, or of each colour
     SkipMap skip_map_;
-    std::vector<StoredRange> visible_;  ///< what visible() and smooth_rule() gave
+    std::vector<StoredRange> visible_;  ///< what visible() and smooth_rule() gave; of colours, one a channel
     SmoothRule smooth_;
     std::uint64_t visible_key_ = 0;
     Space space_;

@@ -33,6 +33,9 @@ std::span<const ProgramDesc> RayCastEffect::programs() const {
             ProgramDesc program{"common/fullscreen.vert", "volume/ray_cast.frag", {}};
             if (function == RayFunction::composite) {
                 program.defines.emplace_back("COMPOSITE");
+                if (shows_colours()) {
+                    program.defines.emplace_back("COLOURS");
+                }
             } else if (function == RayFunction::isosurface) {
                 add_defines(params_.isosurface, params_.sampling.reconstruction.is_tricubic(),
                             program.defines);

@@ -59,6 +59,22 @@ std::vector<StoredRange> RayCastEffect::visible() const {
     return {};
 }
 
+/// The stored numbers of each channel of colours (effects/volume/colours.h) that are not dropped.
+std::vector<StoredRange> RayCastEffect::visible_colours() const {
+    constexpr float all = std::numeric_limits<float>::infinity();
+    constexpr double slack = 1.0;
+    std::vector<StoredRange> ranges(4, {-all, all});
+    ranges[3].low = std::numeric_limits<float>::min();  // no opacity, nothing to be seen
+    const std::vector<AccumulateParams::Channel>& channels = params_.accumulate.channels;
+    for (std::size_t c = 0; c < channels.size(); ++c) {
+        const glm::dvec2 stored = 65535.0 * channels[c].threshold;
+        StoredRange& range = ranges[channels.size() == 2 && c == 1 ? 3 : c];
+        range.low = std::max(range.low, static_cast<float>(stored.x - slack));
+        range.high = static_cast<float>(stored.y + slack);
+    }
+    return ranges;
+}
+
 /// How much colour and opacity change from the least stored number up to each, for long slabs.
 SmoothRule RayCastEffect::smooth_rule() const {
     const Volume& volume = source_->volume();
@@ -81,12 +97,12 @@ bool RayCastEffect::find_bricks(Prepare& prepare) {
         return true;
     }
     // The rule knows of the transfer function alone.
-    const bool adaptive =
-        params_.sampling.tolerance > 0.0 && !projects() && !params_.look.used(variant_.look);
+    const bool adaptive = params_.sampling.tolerance > 0.0 && !projects() && !shows_colours() &&
+                          !params_.look.used(variant_.look);
     const std::uint64_t visible_key =
         Hash().add(parameters_key_).add(source_->version()).add(lattice_.slab_mm).value();
     if (visible_key_ != visible_key) {
-        visible_ = visible();
+        visible_ = shows_colours() ? visible_colours() : visible();
         smooth_ = adaptive ? smooth_rule() : SmoothRule{};
         visible_key_ = visible_key;
     }
@@ -105,9 +121,20 @@ bool RayCastEffect::find_bricks(Prepare& prepare) {
         rows = brick_rows(space_, brick_size, std::max(share, 0.01) * lattice_.slab_local,
                           filter.support_voxels());
     }
-    bricks_ = load_bricks(prepare.assets(), *sampled_, sampled_channel_, brick_size, border, rows);
-    const std::uint64_t key = Hash().add(visible_key).add(bricks_.get()).add(bricks_->version).value();
-    skip_map_.update(bricks_->grid, visible_, crop_, smooth_, key,
+    std::array<BrickLayer, 4> layers;
+    const std::size_t count = shows_colours() ? layers.size() : 1;
+    Hash hash;
+    hash.add(visible_key);
+    for (std::size_t i = 0; i < count; ++i) {
+        const int channel = shows_colours() ? static_cast<int>(i) : sampled_channel_;
+        bricks_[i] = load_bricks(prepare.assets(), *sampled_, channel, brick_size, border, rows);
+        hash.add(bricks_[i].get()).add(bricks_[i]->version);
+        layers[i] = {&bricks_[i]->grid, visible_};
+        if (shows_colours()) {
+            layers[i].visible = layers[i].visible.subspan(i, 1);
+        }
+    }
+    skip_map_.update(std::span(layers).first(count), crop_, smooth_, hash.value(),
                      filter.overshoot() + overshoot(params_.sampling));
     if (skip_map_.occupancy() == 0.0) {
         return false;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
 #include <numbers>
 
 #include "engine/core/hash.h"
@@ -162,14 +163,19 @@ VoxelBox box_around(glm::ivec3 dims, std::span<const std::uint8_t> occupied) {
 
 }  // namespace
 
-void SkipMap::update(const BrickGrid& bricks, std::span<const StoredRange> visible, const VoxelBox& crop,
-                     const SmoothRule& smooth, std::uint64_t key, float overshoot) {
+void SkipMap::update(std::span<const BrickLayer> layers, const VoxelBox& crop, const SmoothRule& smooth,
+                     std::uint64_t key, float overshoot) {
     if (key == key_) {
         return;
     }
     key_ = key;
+    const BrickGrid& bricks = *layers.front().bricks;
     dims_ = bricks.dims;
-    find_occupied(bricks, visible, crop, occupied_, overshoot);
+    find_occupied(bricks, layers.front().visible, crop, occupied_, overshoot);
+    for (const BrickLayer& layer : layers.subspan(1)) {
+        find_occupied(*layer.bricks, layer.visible, crop, layer_, overshoot);
+        std::ranges::transform(occupied_, layer_, occupied_.begin(), std::bit_and());
+    }
     occupancy_ = volume::occupancy(occupied_);
     box_ = box_around(dims_, occupied_);
     kind_ = occupied_;

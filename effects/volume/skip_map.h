@@ -43,14 +43,22 @@ struct SmoothRule {
 [[nodiscard]] SmoothRule make_smooth_rule(const ExtinctionKnots& knots, double low, double high,
                                           double way_mm, double tolerance, double slab_bricks);
 
+/// What must be seen of one summary of the volume, such as a channel's.
+struct BrickLayer {
+    const BrickGrid* bricks = nullptr;
+    std::span<const StoredRange> visible;
+};
+
 /// Which bricks show something under one transfer function and crop, as the march reads it: see
 /// glsl/volume/skip.glsl.
 class SkipMap {
   public:
     /// Finds it anew when `key` (of transfer function, crop and bricks) is another than the last. No OpenGL.
-    /// `overshoot`: how far the filter can leave a brick's range, as find_occupied() has it.
-    void update(const BrickGrid& bricks, std::span<const StoredRange> visible, const VoxelBox& crop,
-                const SmoothRule& smooth, std::uint64_t key, float overshoot = 0.0F);
+    /// Bricks show something where they do in every layer (at least one, of one size); the first is what
+    /// `smooth` is about. `overshoot`: how far the filter can leave a brick's range, as find_occupied() has
+    /// it.
+    void update(std::span<const BrickLayer> layers, const VoxelBox& crop, const SmoothRule& smooth,
+                std::uint64_t key, float overshoot = 0.0F);
     /// Share of bricks that show something.
     [[nodiscard]] double occupancy() const { return occupancy_; }
     /// Box around all bricks that show something; nothing outside it does.
@@ -70,6 +78,7 @@ class SkipMap {
     VoxelBox box_;  ///< [bricks]
     bool any_smooth_ = false;
     std::vector<std::uint8_t> occupied_;
+    std::vector<std::uint8_t> layer_;
     std::vector<std::uint8_t> kind_;
     std::vector<std::uint8_t> smooth_;
     std::vector<std::uint8_t> opened_;

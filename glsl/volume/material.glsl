@@ -48,10 +48,14 @@ vec4 appearance(vec4 c, vec3 local) {
 }
 
 vec4 material(vec3 local) {
+#ifdef COLOURS
+    return colour_material(to_sample(local));
+#else
     float value = sample_volume(to_sample(local));
 #ifdef LABELS
     return appearance(classify_label(value, label_at(local)), local);
 #else
     return appearance(classify(value), local);
+#endif
 #endif
 }

@@ -16,7 +16,12 @@
 #else
 #include "volume/coordinates_cartesian.glsl"
 #endif
+#include "volume/storage.glsl"
+#ifdef COLOURS
+#include "volume/colours.glsl"
+#else
 #include "volume/sample.glsl"
+#endif
 #include "volume/classify.glsl"
 #include "volume/material.glsl"
 #if SCHEME == PREINTEGRATED && defined(COMPOSITE)

@@ -1,5 +1,12 @@
 // Where voxels are read: a 3-D texture, or slices tiled over the layers of an array (STORAGE_ATLAS), for what exceeds
-// the limit of 3-D textures: effects/volume/atlas.h.
+// the limit of 3-D textures: effects/volume/atlas.h. A voxel is a number, or a colour (COLOURS).
+#ifdef COLOURS
+#define VOXEL vec4
+#define CHANNELS rgba
+#else
+#define VOXEL float
+#define CHANNELS r
+#endif
 #ifdef COORDINATES
 // Curvilinear: first and last voxel along the angle may be neighbours.
 uniform bool u_ring;
@@ -38,18 +45,18 @@ ivec3 atlas_tile(int slice) {
     return ivec3(tile * (u_volume_size.xy + 2) + 1, layer);
 }
 
-float texel(ivec3 voxel) {
+VOXEL texel(ivec3 voxel) {
     ivec3 tile = atlas_tile(voxel.z);
-    return texelFetch(u_volume, ivec3(tile.xy + voxel.xy, tile.z), 0).r;
+    return texelFetch(u_volume, ivec3(tile.xy + voxel.xy, tile.z), 0).CHANNELS;
 }
 
-float atlas_slice(vec2 place, int slice) {
+VOXEL atlas_slice(vec2 place, int slice) {
     ivec3 tile = atlas_tile(clamp(slice, 0, u_volume_size.z - 1));
     vec2 page = vec2(textureSize(u_volume, 0).xy);
-    return textureLod(u_volume, vec3((vec2(tile.xy) + place) / page, float(tile.z)), 0.0).r;
+    return textureLod(u_volume, vec3((vec2(tile.xy) + place) / page, float(tile.z)), 0.0).CHANNELS;
 }
 
-float linear_texel(vec3 place) {
+VOXEL linear_texel(vec3 place) {
     vec3 size = vec3(u_volume_size);
     vec3 p = place * size;
     // The border around each slice takes what rounding moves beyond the outermost centres.
@@ -59,8 +66,8 @@ float linear_texel(vec3 place) {
     inside.ANGLE = u_ring ? p.ANGLE - size.ANGLE * floor(p.ANGLE / size.ANGLE) : inside.ANGLE;
 #endif
     float below = floor(p.z - 0.5);
-    float low = atlas_slice(inside, int(below));
-    float high = atlas_slice(inside, int(below) + 1);
+    VOXEL low = atlas_slice(inside, int(below));
+    VOXEL high = atlas_slice(inside, int(below) + 1);
     return low + (p.z - 0.5 - below) * (high - low);
 }
 #else
@@ -71,12 +78,12 @@ ivec3 volume_size() {
 }
 
 // One voxel, which must be inside.
-float texel(ivec3 voxel) {
-    return texelFetch(u_volume, voxel, 0).r;
+VOXEL texel(ivec3 voxel) {
+    return texelFetch(u_volume, voxel, 0).CHANNELS;
 }
 
 // Trilinear by the texture unit; beyond the outermost centres their value goes on.
-float linear_texel(vec3 place) {
+VOXEL linear_texel(vec3 place) {
 #ifdef COORDINATES
     // The sampler of a ring repeats along all axes.
     vec3 edge = 0.5 / vec3(volume_size());
@@ -84,7 +91,7 @@ float linear_texel(vec3 place) {
     place = clamp(place, edge, 1.0 - edge);
     place.ANGLE = u_ring ? angle : place.ANGLE;
 #endif
-    return textureLod(u_volume, place, 0.0).r;
+    return textureLod(u_volume, place, 0.0).CHANNELS;
 }
 #endif
 

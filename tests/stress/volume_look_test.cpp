@@ -42,6 +42,34 @@ TEST_F(VolumeLooks, EveryFunctionWithEveryFilterAndEveryScheme) {
     EXPECT_TRUE(renderer().log().faults().empty()) << said();
 }
 
+TEST_F(VolumeLooks, ColoursAtTheirEnds) {
+    constexpr float nan_value = std::numeric_limits<float>::quiet_NaN();
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    const json list = json::array({json::object(), json::object(), json::object()});
+    for (const glm::ivec3& dims : {glm::ivec3(1), glm::ivec3(5, 1, 7), glm::ivec3(4)}) {
+        for (const float odd : {0.0F, 1e37F, -1e37F, nan_value, infinity}) {
+            Volume volume = constant_volume(dims, glm::dvec3(2.0), 7.0);
+            std::vector<float> values(3 * volume.grid.voxel_count(), 7.0F);
+            values[values.size() / 2] = odd;
+            volume.channels = 3;
+            const auto bytes = std::as_bytes(std::span(values));
+            volume.voxels.assign(bytes.begin(), bytes.end());
+            const LiveVolume live(std::move(volume));
+            for (const auto& [opacity, samples, brightness] :
+                 {std::tuple(0.0, 1.0, 0.0), std::tuple(1e30, 1.0, 1e30), std::tuple(1.0, 1e9, -1e30)}) {
+                json parameters{{"function", "accumulate"}};
+                parameters["accumulate"] = {{"opacity", opacity},
+                                            {"samples", samples},
+                                            {"brightness", brightness},
+                                            {"channels", list}};
+                (void)cast(live, parameters);
+                parameters["accumulate"]["channels"][1]["threshold"] = {1.0, 0.0};
+                EXPECT_TRUE(is_empty(cast(live, parameters)));
+            }
+        }
+    }
+}
+
 TEST_F(VolumeLooks, TransferFunctionsOfNothingOneKnotAndSteps) {
     const LiveVolume volume(block());
     const glm::dmat4 to_world = volume.volume().grid.texture_to_world();

@@ -125,7 +125,8 @@ void processor_work(Lab& lab, const Volume& volume) {
     const Samples edit = processor_time(repeats, [&](int i) {
         const float low = 100.0F + static_cast<float>(i % 20);
         const std::array<volume::StoredRange, 1> visible{{{low, 255.0F}}};
-        map.update(grid, visible, {{}, volume.grid.dims}, {}, static_cast<std::uint64_t>(i) + 1);
+        const std::array<volume::BrickLayer, 1> layers{{{&grid, visible}}};
+        map.update(layers, {{}, volume.grid.dims}, {}, static_cast<std::uint64_t>(i) + 1);
     });
     lab.add({.group = "skipping",
              .name = "occupancy and distances after an edit",

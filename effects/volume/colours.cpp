@@ -1,0 +1,138 @@
+#include "effects/volume/colours.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "engine/core/error.h"
+#include "engine/core/hash.h"
+
+namespace viscera::volume {
+namespace {
+
+constexpr double most = 65535.0;
+
+struct Range {
+    double low = std::numeric_limits<double>::infinity();
+    double high = -std::numeric_limits<double>::infinity();
+
+    [[nodiscard]] bool holds(const Range& other) const { return other.low >= low && other.high <= high; }
+};
+
+/// Calls visit(voxel of the box, value of each channel).
+template <class Visit>
+void each_voxel(const Volume& volume, const VoxelBox& box, const Visit& visit) {
+    std::array<double, 4> values{};
+    std::size_t count = 0;
+    for (int z = 0; z < box.size.z; ++z) {
+        for (int y = 0; y < box.size.y; ++y) {
+            for (int x = 0; x < box.size.x; ++x) {
+                for (int c = 0; c < volume.channels; ++c) {
+                    values[static_cast<std::size_t>(c)] =
+                        volume.value_of(volume.stored(box.first + glm::ivec3(x, y, z), c));
+                }
+                visit(count++, values);
+            }
+        }
+    }
+}
+
+Range range_of(const Volume& volume, const VoxelBox& box) {
+    Range range;
+    each_voxel(volume, box, [&](std::size_t, const std::array<double, 4>& values) {
+        for (int c = 0; c < volume.channels; ++c) {
+            const double value = values[static_cast<std::size_t>(c)];
+            if (std::isfinite(value)) {
+                range = {std::min(range.low, value), std::max(range.high, value)};
+            }
+        }
+    });
+    return range;
+}
+
+std::vector<std::byte> colours(const Volume& volume, const VoxelBox& box, const Range& range) {
+    const auto size = glm::tvec3<std::size_t>(box.size);
+    std::vector<std::byte> result(size.x * size.y * size.z * 4 * sizeof(std::uint16_t));
+    const double width = range.high - range.low;
+    const auto share = [&](double value) {
+        return width > 0.0 && std::isfinite(value) ? most * (value - range.low) / width : 0.0;
+    };
+    each_voxel(volume, box, [&](std::size_t voxel, const std::array<double, 4>& values) {
+        glm::dvec4 rgba(share(values[0]), share(values[1]), share(values[2]), share(values[3]));
+        if (volume.channels == 2) {
+            rgba = glm::dvec4(glm::dvec3(rgba.r), rgba.g);
+        } else if (volume.channels == 3) {
+            rgba.a = (rgba.r + rgba.g + rgba.b) / 3.0;
+        }
+        const glm::u16vec4 texel(glm::round(rgba));
+        std::memcpy(result.data() + voxel * sizeof(texel), &texel, sizeof(texel));
+    });
+    return result;
+}
+
+/// Colours that follow the volume they are made from.
+struct Colours {
+    Source source;
+    std::unique_ptr<LiveVolume> live;
+    Range range;
+    std::uint64_t version = 0;  ///< of the voxels
+};
+
+void follow(Colours& made, const Source& voxels) {
+    const Volume& volume = voxels.volume();
+    bool everything = true;
+    std::vector<VoxelBox> changed;
+    if (voxels.live != nullptr && made.version != 0) {
+        changed = voxels.live->changes_since(made.version, everything);
+    }
+    everything = everything || !std::ranges::all_of(changed, [&](const VoxelBox& box) {
+                     return made.range.holds(range_of(volume, box));
+                 });
+    if (everything) {
+        const VoxelBox all{glm::ivec3(0), volume.grid.dims};
+        made.range = range_of(volume, all);
+        Volume rgba{.grid = volume.grid,
+                    .type = ScalarType::u16,
+                    .channels = 4,
+                    .voxels = colours(volume, all, made.range),
+                    .slope = 1.0 / most,
+                    .source = volume.source};
+        if (made.live == nullptr) {
+            made.live = std::make_unique<LiveVolume>(std::move(rgba));
+        } else {
+            made.live->replace(std::move(rgba));
+        }
+    } else {
+        for (const VoxelBox& box : changed) {
+            made.live->update(box, colours(volume, box, made.range));
+        }
+    }
+    made.version = voxels.version();
+    made.source.live = made.live.get();
+    made.source.statistics = {.min = 0.0, .max = 1.0};
+}
+
+}  // namespace
+
+std::shared_ptr<const Source> load_colours(Assets& assets, const Source& source, int channels) {
+    const Volume& volume = source.volume();
+    if (volume.channels != channels) {
+        throw Error(ErrorCode::scene, "/accumulate/channels",
+                    volume.source + " has " + std::to_string(volume.channels) + " channels, not " +
+                        std::to_string(channels));
+    }
+    const std::uint64_t key = Hash().add("colours").add(source.key).value();
+    const std::shared_ptr<Colours> made = assets.shared<Colours>(key, [&] {
+        auto colours = std::make_shared<Colours>();
+        colours->source.key = key;
+        return colours;
+    });
+    if (made->version != source.version()) {
+        follow(*made, source);
+    }
+    return {made, &made->source};
+}
+
+}  // namespace viscera::volume
