@@ -263,13 +263,17 @@ void Schedule::give_status(const Plan& plan) {
     };
     passes_.resize(plan.passes.size());
     for (std::size_t p = 0; p < plan.passes.size(); ++p) {
-        const std::string_view said = works_[p].reason;
+        // Why it would rest is not why it runs.
+        const bool restless = works_[p].rests && runs_[p] != 0;
+        const std::string_view said = restless ? std::string_view{} : works_[p].reason;
         if (!plan.passes[p].live) {
             passes_[p] = {culled, plan.passes[p].reason};
         } else if (works_[p].idle) {
             passes_[p] = {idle, or_else(said, "nothing to draw")};
         } else if (wanted_[p] == 0) {
             passes_[p] = {culled, "no pass that draws needs it in this frame"};
+        } else if (runs_[p] == 0 && works_[p].rests) {
+            passes_[p] = {idle, or_else(said, "nothing has changed")};
         } else if (runs_[p] == 0) {
             passes_[p] = {cached, "inputs, parameters and camera unchanged"};
         } else if (works_[p].region || works_[p].update) {

@@ -23,6 +23,7 @@ struct PassWork {
     PixelRegion touched{};  ///< on the targets
     /// Bit b: into binding b of the pass nothing is drawn though the pass is not idle.
     std::uint32_t empty_bindings = 0;
+    bool rests = false;  ///< nothing has happened since `key` was drawn: idle rather than cached
 };
 
 enum class PassStatus { culled, idle, cached, reduced, run };

@@ -50,6 +50,8 @@ struct Work {
     PixelRegion region;
     std::uint64_t key = 0;  ///< hash of all the picture depends on besides its inputs; 0: never reuse it
     std::uint32_t empty_outputs = 0;  ///< bit i: port i of ports() holds nothing but its clear value
+    bool goes_on = false;             ///< see go_on()
+    bool rests = false;               ///< see rest()
 
     [[nodiscard]] static Work idle(std::string_view reason) { return {.kind = Kind::idle, .reason = reason}; }
     [[nodiscard]] static Work all(std::uint64_t key) { return {.kind = Kind::all, .key = key}; }
@@ -61,6 +63,16 @@ struct Work {
     /// its rectangles too.
     [[nodiscard]] static Work update(const PixelRegion& region, std::string_view reason, std::uint64_t key) {
         return {.kind = Kind::update, .reason = reason, .region = region, .key = key};
+    }
+    /// For pictures of which only the GPU knows what has changed: where Pass::kept() says that the targets
+    /// still hold what this pass drew last, they are not cleared, and draw() changes what is to change.
+    [[nodiscard]] static Work go_on(std::uint64_t key) {
+        return {.kind = Kind::all, .key = key, .goes_on = true};
+    }
+    /// As go_on(), and nothing has changed since the key was drawn: the pass is reported as idle, unless the
+    /// picture is lost and must be drawn again.
+    [[nodiscard]] static Work rest(std::string_view reason, std::uint64_t key) {
+        return {.kind = Kind::all, .reason = reason, .key = key, .goes_on = true, .rests = true};
     }
 };
 

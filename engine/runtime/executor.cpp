@@ -106,6 +106,7 @@ void Executor::set_plan(Plan plan, std::vector<ImportedTarget> imported, std::sp
         PassState state{.effect = effects[p].effect,
                         .parameters_key = effects[p].parameters_key,
                         .origin = effects[p].origin};
+        state.drawn_keys.assign(plan_.passes[p].bindings.size(), 0);
         state.frame = !state.effect->uses_view() ? 0 : state.origin.eye == 1 ? 2 : 1;
         state.ports = state.effect->ports();
         for (const PlanBinding& binding : plan_.passes[p].bindings) {
@@ -238,7 +239,8 @@ void Executor::prepare(FrameReport& report) {
                       .key = state.work.key,
                       .reason = state.work.reason,
                       .update = state.work.kind == Work::Kind::update,
-                      .touched = state.work.region};
+                      .touched = state.work.region,
+                      .rests = state.work.rests};
         for (std::size_t b = 0; b < state.port_of_binding.size(); ++b) {
             work.empty_bindings |= ((state.work.empty_outputs >> state.port_of_binding[b]) & 1U) << b;
         }
@@ -296,8 +298,9 @@ bool Executor::draw(std::size_t p) {
         settle(settlement);
     }
     target.bind();
-    clear(state, pass, target, region.bounds());
-    const Pass view(shared_, frames_[state.frame], state.programs, state.inputs, state.outputs, size, region);
+    const bool kept = clear(state, pass, target, region.bounds());
+    const Pass view(shared_, frames_[state.frame], state.programs, state.inputs, state.outputs, size, region,
+                    kept);
     view.raster(gl::overwrite_state);
     state.effect->draw(view);
     if (state.timer) {
@@ -314,9 +317,27 @@ void Executor::observe(std::string_view pass, bool begins) const {
     }
 }
 
-void Executor::clear(const PassState& state, const PlanPass& pass, const gl::Framebuffer& target,
+/// Whether all that a pass draws into holds what it drew there last.
+bool Executor::holds_last(const PassState& state, const PlanPass& pass) {
+    for (std::size_t b = 0; b < pass.bindings.size(); ++b) {
+        const PlanBinding& binding = pass.bindings[b];
+        if (!makes_content(binding.access) || !binding.content ||
+            !schedule_.contents()[*binding.content].is_drawn(*binding.content)) {
+            continue;
+        }
+        const std::optional<std::size_t> texture = plan_.contents[*binding.content].texture;
+        const std::uint64_t last = state.drawn_keys[b];
+        if (!texture || last == 0 || pool_.backdrop(*texture).key != last) {
+            return false;
+        }
+    }
+    return true;
+}
+
+bool Executor::clear(PassState& state, const PlanPass& pass, const gl::Framebuffer& target,
                      const PixelRect& region) {
     const PixelRect all{0, 0, target.width(), target.height()};
+    const bool kept = state.work.goes_on && holds_last(state, pass);
     int colour = 0;
     for (std::size_t b = 0; b < pass.bindings.size(); ++b) {
         const PlanBinding& binding = pass.bindings[b];
@@ -335,15 +356,18 @@ void Executor::clear(const PassState& state, const PlanPass& pass, const gl::Fra
             state.ports[state.port_of_binding[b]].overwrites && state.work.kind == Work::Kind::all;
         TargetPool::Backdrop unknown;
         TargetPool::Backdrop& backdrop = content.texture ? pool_.backdrop(*content.texture) : unknown;
-        if (continues || overwritten) {
+        state.drawn_keys[b] = schedule_.contents()[*binding.content].key;
+        backdrop.key = state.drawn_keys[b];
+        if (continues || overwritten || kept) {
             backdrop.known = backdrop.known && !overwritten;
             backdrop.drawn = around(backdrop.drawn, region);
             continue;
         }
         const bool has_backdrop = backdrop.known && backdrop.clear == content.clear;
         clear_part(target, index, content.clear, has_backdrop ? backdrop.drawn : all);
-        backdrop = {true, content.clear, region};
+        backdrop = {true, content.clear, region, state.drawn_keys[b]};
     }
+    return kept;
 }
 
 /// index: of a colour, or -1 for depth.

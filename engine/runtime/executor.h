@@ -72,6 +72,7 @@ class Executor {
         std::vector<Pass::Input> inputs;
         std::vector<Pass::Output> outputs;
         std::vector<const gl::Texture*> colours;
+        std::vector<std::uint64_t> drawn_keys;  ///< by binding: the content that it drew last
         std::unique_ptr<gl::GpuTimer> timer;
         Work work;
     };
@@ -88,8 +89,10 @@ class Executor {
     void check(std::string_view pass) const;
     void observe(std::string_view pass, bool begins) const;
     [[nodiscard]] const gl::Texture& texture_of(std::size_t content) const;
-    void clear(const PassState& state, const PlanPass& pass, const gl::Framebuffer& target,
+    /// True when nothing was cleared, since all goes on from what the pass drew last.
+    bool clear(PassState& state, const PlanPass& pass, const gl::Framebuffer& target,
                const PixelRect& region);
+    [[nodiscard]] bool holds_last(const PassState& state, const PlanPass& pass);
     void clear_part(const gl::Framebuffer& target, int index, const std::array<float, 4>& value,
                     const PixelRect& part) const;
 

@@ -53,7 +53,7 @@ class Pass {
 
     Pass(const Shared& shared, const Frame& frame, std::span<ShaderLibrary::Entry* const> programs,
          std::span<const Input> inputs, std::span<const Output> outputs, glm::ivec2 size,
-         const PixelRegion& region)
+         const PixelRegion& region, bool kept)
         : shared_(shared),
           frame_(frame),
           programs_(programs),
@@ -61,7 +61,8 @@ class Pass {
           outputs_(outputs),
           size_(size),
           region_(region),
-          bounds_(region.bounds()) {}
+          bounds_(region.bounds()),
+          kept_(kept) {}
 
     [[nodiscard]] const gl::Functions& gl() const { return shared_.gl; }
     [[nodiscard]] const Frame& frame() const { return frame_; }
@@ -73,6 +74,8 @@ class Pass {
     [[nodiscard]] const PixelRect& region() const { return bounds_; }
     /// The rectangles themselves.
     [[nodiscard]] std::span<const PixelRect> rects() const { return region_.rects(); }
+    /// After Work::go_on(): the targets hold what this pass drew last; otherwise they are clear.
+    [[nodiscard]] bool kept() const { return kept_; }
     /// Whether a read port has content.
     [[nodiscard]] bool has(std::string_view port) const { return texture(port) != nullptr; }
     [[nodiscard]] const gl::Texture* texture(std::string_view port) const;
@@ -117,6 +120,7 @@ class Pass {
     glm::ivec2 size_;
     PixelRegion region_;
     PixelRect bounds_;
+    bool kept_ = false;
     mutable bool dispatched_ = false;
 };
 

@@ -31,11 +31,13 @@ class TargetPool {
     /// Gives the texture of this OpenGL name to the caller, who then deletes it; the pool makes a new one in
     /// its place. 0: not ours.
     [[nodiscard]] GLuint release(GLuint id);
-    /// What is known of a texture's pixels: all but those of `drawn` have the value `clear`.
+    /// What is known of a texture's pixels: all but those of `drawn` have the value `clear`, and who drew
+    /// last.
     struct Backdrop {
         bool known = false;
         std::array<float, 4> clear{};
         PixelRect drawn;
+        std::uint64_t key = 0;  ///< of the content that was drawn into it last
     };
     [[nodiscard]] Backdrop& backdrop(std::size_t index) { return backdrops_[index]; }
     /// Nothing is known of any texture any more but of those `kept`.
