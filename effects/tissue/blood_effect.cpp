@@ -38,8 +38,7 @@ Port read(const char* name, const char* target, const char* doc, bool optional =
 }  // namespace
 
 BloodEffect::BloodEffect() : programs_(BloodGpu::programs()) {
-    programs_.push_back({"tissue/blood_tile.vert", "tissue/blood_look.frag", {"VISIBLE"}});
-    programs_.push_back({"tissue/blood_tile.vert", "tissue/blood_look.frag", {"VISIBLE", "CAPS"}});
+    programs_.push_back({"tissue/blood_tile.vert", "tissue/blood_look.frag", {"CHANGED"}});
 }
 
 BloodEffect::~BloodEffect() = default;
@@ -152,8 +151,9 @@ Work BloodEffect::prepare(Prepare& prepare) {
         state.step = target_step_;
     }
     const bool steps = target_step_ > state.step;
-    return Work::all(
-        Hash().add(parameters_key_).add(state.version + (steps ? 1 : 0)).add(surface_key_).value());
+    const std::uint64_t key =
+        Hash().add(parameters_key_).add(state.version + (steps ? 1 : 0)).add(surface_key_).value();
+    return disturbed ? Work::go_on(key) : Work::rest("all blood stands still", key);
 }
 
 bool BloodEffect::bleeds(std::int64_t first, std::int64_t last) const {
@@ -350,20 +350,27 @@ void BloodEffect::draw(const Pass& pass) {
             state.gpu->ask_tiles(state.looks);
         }
     }
-    const bool caps = state.gpu->draw_caps(pass, medium_, state.ring.alive());
+    show(pass, target);
+}
+
+void BloodEffect::show(const Pass& pass, GLint target) {
+    BloodState& state = *state_;
+    using Shown = BloodGpu::Shown;
+    const bool same = shown_version_ != 0 && shown_version_ == state.shown_version;
+    const Shown before = !pass.kept() ? Shown::nothing : same ? Shown::last : Shown::unknown;
+    state.gpu->begin_picture(pass, medium_, state.ring.alive(), before);
     pass.gl().BindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(target));
     pass.raster(cover_state);
-    const gl::Program& program = pass.use(programs_.size() - (caps ? 1 : 2));
-    pass.bind(program, "u_film", state.gpu->film(), gl::Filter::nearest);
+    const gl::Program& program = pass.use(programs_.size() - 1);
+    pass.bind(program, "u_relief", state.gpu->relief(), gl::Filter::nearest);
     pass.bind(program, "u_metric", "metric");
-    if (caps) {
-        pass.bind(program, "u_caps", state.gpu->caps(), gl::Filter::nearest);
-    }
     program.set("u_extinction", glm::vec3(params_.look.extinction_per_mm));
     program.set("u_deep", glm::vec3(params_.look.deep_colour));
     program.set("u_covering", static_cast<float>(params_.look.covering_mm));
     program.set("u_bump", static_cast<float>(params_.look.bump));
-    state.gpu->cover_visible(pass, program);
+    state.gpu->cover_changed(pass, program, before);
+    state.gpu->end_picture(pass);
+    shown_version_ = state.shown_version = state.version;
 }
 
 }  // namespace viscera::tissue

@@ -40,6 +40,7 @@ class BloodEffect final : public Effect {
     void set_tools(std::int64_t step);
     void update_surface(const Pass& pass);
     void run_step(const Pass& pass);
+    void show(const Pass& pass, GLint target);
     void collect_drops(std::int64_t step);
     void fly(double dt);
     [[nodiscard]] glm::dvec3 gravity_mm_s2() const;
@@ -53,6 +54,7 @@ class BloodEffect final : public Effect {
     Gravity gravity_;
     std::uint64_t surface_key_ = 0;  ///< of the mesh as it lies now
     std::int64_t target_step_ = 0;
+    std::uint64_t shown_version_ = 0;  ///< of the blood that this pass drew last
     std::vector<WoundParams> wounds_;
     std::vector<Place> places_;
     std::vector<CleanerParams> tools_;

@@ -13,31 +13,32 @@ enum class Shader : std::size_t {
     start_spill,
     link,
     film,
+    film_seams,
     film_tools,
+    film_tools_seams,
     move,
     move_tools,
     deposited,
-    flow_links,
     spawned,
     spawned_energy,
     counted,
     counted_energy,
     scan,
     search,
+    reach,
     plan,
     mark_of_drops,
     mark_of_seams,
     settle,
+    note,
+    relief,
+    relief_changed,
     cap,
 };
 
 constexpr int tile_side = 32;
 constexpr int block_side = 8;  // divides a tile's
-// Blocks that are marked around one across a seam: what a drop leaves there lies at most 15 texels off, five
-// texels of gutter stretched threefold.
-constexpr float beyond_extent = 5.0F;
 constexpr int ring_width = 256;
-constexpr int link_width = 512;
 constexpr int spawn_width = 128;  // two texels for each drop
 constexpr int spawn_rows = 16;
 constexpr int deposit_points = 4;
@@ -87,30 +88,6 @@ void clear(const Pass& pass, const gl::Framebuffer& target, float value = 0.0F) 
     target.clear_colour(0, {value, value, value, value});
 }
 
-/// Which squares of a side a list of links joins, each pair once: x, y here, x, y across.
-gl::Texture pairs_of(const gl::Functions& gl, std::span<const SeamLink> links, int size, int side,
-                     int& count) {
-    std::vector<std::array<int, 4>> found;
-    found.reserve(links.size());
-    for (const SeamLink& link : links) {
-        const int from = static_cast<int>(link.from);
-        const int to = static_cast<int>(link.to);
-        found.push_back({from % size / side, from / size / side, to % size / side, to / size / side});
-    }
-    std::ranges::sort(found);
-    found.erase(std::ranges::unique(found).begin(), found.end());
-    count = static_cast<int>(found.size());
-    const int rows = std::max((count + link_width - 1) / link_width, 1);
-    std::vector<glm::vec4> texels(static_cast<std::size_t>(rows) * link_width, glm::vec4(0.0F));
-    std::ranges::transform(found, texels.begin(), [](const std::array<int, 4>& pair) {
-        return glm::vec4(glm::ivec4(pair[0], pair[1], pair[2], pair[3]));
-    });
-    gl::Texture texture =
-        gl::Texture::make_2d(gl, link_width, rows, PixelFormat::rgba32f, "squares that seams join");
-    texture.upload(std::as_bytes(std::span(texels)));
-    return texture;
-}
-
 void bind(const Pass& pass, const gl::Program& program, std::string_view uniform,
           const gl::Texture& texture) {
     pass.bind(program, uniform, texture, gl::Filter::nearest);
@@ -125,21 +102,26 @@ std::vector<ProgramDesc> BloodGpu::programs() {
             {whole, "tissue/blood_start.frag", {"SPILL"}},
             {whole, "tissue/blood_link.frag", {}},
             {tile, "tissue/blood_film.frag", {}},
+            {tile, "tissue/blood_film.frag", {"SEAMS"}},
             {tile, "tissue/blood_film.frag", {"TOOLS"}},
+            {tile, "tissue/blood_film.frag", {"TOOLS", "SEAMS"}},
             {whole, "tissue/blood_move.frag", {}},
             {whole, "tissue/blood_move.frag", {"TOOLS"}},
             {"tissue/blood_deposit.vert", "tissue/blood_add.frag", {}},
-            {"tissue/blood_link.vert", "tissue/blood_add.frag", {}},
             {"tissue/blood_spawn.vert", "tissue/blood_spawn.frag", {}},
             {"tissue/blood_spawn.vert", "tissue/blood_spawn.frag", {"ENERGY"}},
             {"tissue/blood_spawn.vert", "tissue/blood_spawn.frag", {"LEDGER"}},
             {"tissue/blood_spawn.vert", "tissue/blood_spawn.frag", {"LEDGER", "ENERGY"}},
             {whole, "tissue/blood_scan.frag", {}},
             {whole, "tissue/blood_search.frag", {}},
+            {whole, "tissue/blood_reach.frag", {}},
             {whole, "tissue/blood_plan.frag", {}},
             {"tissue/blood_mark.vert", "tissue/blood_mark.frag", {}},
             {"tissue/blood_mark.vert", "tissue/blood_mark.frag", {"SEAMS"}},
             {tile, "tissue/blood_copy.frag", {"SETTLED"}},
+            {whole, "tissue/blood_copy.frag", {}},
+            {whole, "tissue/blood_relief.frag", {}},
+            {tile, "tissue/blood_relief.frag", {"CHANGED"}},
             {"tissue/blood_cap.vert", "tissue/blood_cap.frag", {}}};
 }
 
@@ -155,9 +137,12 @@ BloodGpu::BloodGpu(const gl::Functions& gl, int size, int max_drops)
                                     "what drops leave behind")),
       marks_(pair_of(gl, tiles_, tiles_, PixelFormat::rg8, "tiles of blood")),
       across_(pair_of(gl, tiles_, tiles_, PixelFormat::r8, "tiles of blood across seams")),
+      reach_(gl::Texture::make_2d(gl, tiles_, tiles_, PixelFormat::rg8, "tiles in reach of blood")),
       held_(pair_of(gl, blocks_, blocks_, PixelFormat::rgba8, "blocks of blood")),
       beyond_(gl::Texture::make_2d(gl, blocks_, blocks_, PixelFormat::r8, "blocks of blood across seams")),
       plan_(pair_of(gl, blocks_, blocks_, PixelFormat::rg8, "blocks to be stepped")),
+      stepped_(gl::Texture::make_2d(gl, blocks_, blocks_, PixelFormat::r8, "blocks stepped")),
+      relief_(gl::Texture::make_2d(gl, size, size, PixelFormat::r32f, "relief of blood")),
       spawn_(gl::Texture::make_2d(gl, spawn_width, spawn_rows, PixelFormat::rgba32f, "new drops of blood")),
       ledger_(gl::Texture::make_2d(gl, sources, 1, PixelFormat::r32f, "blood by source")),
       film_target_(targets_of(gl, film_, "film of blood")),
@@ -166,8 +151,11 @@ BloodGpu::BloodGpu(const gl::Functions& gl, int size, int max_drops)
       marks_target_(targets_of(gl, marks_, "tiles of blood")),
       across_target_(targets_of(gl, across_, "tiles of blood across seams")),
       held_target_(targets_of(gl, held_, "blocks of blood")),
+      reach_target_(gl, reach_, "tiles in reach of blood"),
       beyond_target_(gl, beyond_, "blocks of blood across seams"),
       plan_target_(targets_of(gl, plan_, "blocks to be stepped")),
+      stepped_target_(gl, stepped_, "blocks stepped"),
+      relief_target_(gl, relief_, "relief of blood"),
       ledger_target_(gl, ledger_, "blood by source"),
       spawn_rows_(static_cast<std::size_t>(spawn_width / 2 * spawn_rows)),
       tile_answers_(gl) {}
@@ -205,8 +193,14 @@ void BloodGpu::cover_tiles(const Pass& pass, const gl::Program& program) const {
     pass.draw_generated(GL_POINTS, blocks_ * blocks_, 1);
 }
 
-void BloodGpu::cover_visible(const Pass& pass, const gl::Program& program) const {
+void BloodGpu::cover_changed(const Pass& pass, const gl::Program& program, Shown before) const {
+    bind(pass, program, "u_stepped", stepped_);
+    program.set("u_whole", before == Shown::nothing);
     cover_tiles(pass, program);
+}
+
+void BloodGpu::end_picture(const Pass& pass) const {
+    clear(pass, stepped_target_);
 }
 
 void BloodGpu::take_surface(const Pass& pass, const BloodMedium& medium, bool empty) {
@@ -223,6 +217,7 @@ void BloodGpu::take_surface(const Pass& pass, const BloodMedium& medium, bool em
     draw_into(pass, film_target_[1 - film_now_], gl::overwrite_state);
     pass.draw_fullscreen();
     film_now_ = 1 - film_now_;
+    relief_known_ = false;
     // Again into the other one, whose areas are now the new ones: nothing changes its volume twice.
     bind(pass, program, "u_film", film());
     draw_into(pass, film_target_[1 - film_now_], gl::overwrite_state);
@@ -236,39 +231,35 @@ void BloodGpu::take_surface(const Pass& pass, const BloodMedium& medium, bool em
             held_target_[i].clear_colour(0, {spill ? 1.0F : 0.0F, 0.0F, 0.0F, 0.0F});
             clear(pass, plan_target_[i], spill ? 1.0F : 0.0F);
         }
+        clear(pass, reach_target_, spill ? 1.0F : 0.0F);
         clear(pass, beyond_target_);
+        clear(pass, stepped_target_);
         clear(pass, ledger_target_);
     }
-    if (link_count_ > 0) {
+    if (!seams_->empty()) {
         const gl::Program& links = use(pass, Shader::link);
-        bind(pass, links, "u_links", *links_);
+        bind(pass, links, "u_links", seams_->links);
         pass.bind(links, "u_position", "position");
         pass.bind(links, "u_normal", "normal");
         pass.bind(links, "u_metric", "metric");
         bind(pass, links, "u_film", film());
         pass.bind(links, "u_gravity", "gravity");
         set_medium(links, medium);
-        draw_into(pass, *pulls_target_, gl::overwrite_state);
+        draw_into(pass, seams_->pulls_target, gl::overwrite_state);
         pass.draw_fullscreen();
     }
 }
 
 void BloodGpu::find_seams(const Pass& pass) {
     std::vector<SeamLink> links;
+    std::vector<SeamJump> jumps;
     if (pass.has("seam")) {
-        links = seam_links(gl::read_texture(*gl_, *pass.texture("position")),
-                           gl::read_texture(*gl_, *pass.texture("seam")));
+        const Image position = gl::read_texture(*gl_, *pass.texture("position"));
+        const Image seam = gl::read_texture(*gl_, *pass.texture("seam"));
+        links = seam_links(position, seam);
+        jumps = seam_jumps(position, seam);
     }
-    link_count_ = static_cast<int>(links.size());
-    tile_pairs_ = pairs_of(*gl_, links, size_, tile_side, tile_pair_count_);
-    block_pairs_ = pairs_of(*gl_, links, size_, block_side, block_pair_count_);
-    const int rows = std::max((link_count_ + link_width - 1) / link_width, 1);
-    links.resize(static_cast<std::size_t>(rows * link_width));
-    pulls_target_.reset();
-    links_ = gl::Texture::make_2d(*gl_, link_width, rows, PixelFormat::rgba32f, "parts of seams");
-    links_->upload(std::as_bytes(std::span(links)));
-    pulls_ = gl::Texture::make_2d(*gl_, link_width, rows, PixelFormat::rgba32f, "fall across seams");
-    pulls_target_.emplace(*gl_, *pulls_, "fall across seams");
+    seams_.emplace(make_seams(*gl_, links, jumps, size_, tile_side, block_side));
 }
 
 void BloodGpu::mark_drops(const Pass& pass, const BloodMedium& medium, const DropRange& range,
@@ -286,33 +277,43 @@ void BloodGpu::mark_drops(const Pass& pass, const BloodMedium& medium, const Dro
     pass.draw_generated(GL_POINTS, static_cast<int>(range.count), 1);
 }
 
-void BloodGpu::mark_seams(const Pass& pass) const {
-    if (link_count_ == 0) {
-        return;
-    }
+void BloodGpu::mark_pairs(const Pass& pass, const SeamPairs& pairs, const gl::Texture& marked,
+                          const gl::Framebuffer& target) const {
     const gl::Program& program = use(pass, Shader::mark_of_seams);
-    bind(pass, program, "u_pairs", *tile_pairs_);
-    bind(pass, program, "u_marked", marks_[marks_now_]);
-    program.set("u_extent", 1.0F);
-    draw_into(pass, across_target_[marks_now_], mark_state);
-    pass.draw_generated(GL_POINTS, tile_pair_count_, 1);
+    bind(pass, program, "u_pairs", pairs.list);
+    bind(pass, program, "u_marked", marked);
+    draw_into(pass, target, mark_state);
+    pass.draw_generated(GL_POINTS, pairs.count, 1);
+}
+
+void BloodGpu::reach_from_tiles(const Pass& pass) const {
+    if (!seams_->empty()) {
+        mark_pairs(pass, seams_->tiles, marks_[marks_now_], across_target_[marks_now_]);
+    }
+    const gl::Program& program = use(pass, Shader::reach);
+    bind(pass, program, "u_tiles", marks_[marks_now_]);
+    bind(pass, program, "u_across", across_[marks_now_]);
+    draw_into(pass, reach_target_, gl::overwrite_state);
+    pass.draw_fullscreen();
+}
+
+/// Those to be stepped up to now have been.
+void BloodGpu::note_stepped(const Pass& pass) const {
+    const gl::Program& program = use(pass, Shader::note);
+    bind(pass, program, "u_film", plan_[marks_now_]);
+    draw_into(pass, stepped_target_, gl::max_blend_state);
+    pass.draw_fullscreen();
 }
 
 void BloodGpu::plan(const Pass& pass, const BloodMedium& medium, const DropRange& alive) const {
     if (alive.count > 0) {
         mark_drops(pass, medium, alive, true);
     }
-    if (link_count_ > 0) {
-        const gl::Program& program = use(pass, Shader::mark_of_seams);
-        bind(pass, program, "u_pairs", *block_pairs_);
-        bind(pass, program, "u_marked", held_[marks_now_]);
-        program.set("u_extent", beyond_extent);
-        draw_into(pass, beyond_target_, mark_state);
-        pass.draw_generated(GL_POINTS, block_pair_count_, 1);
+    if (!seams_->empty()) {
+        mark_pairs(pass, seams_->blocks, held_[marks_now_], beyond_target_);
     }
     const gl::Program& program = use(pass, Shader::plan);
-    bind(pass, program, "u_tiles", marks_[marks_now_]);
-    bind(pass, program, "u_across", across_[marks_now_]);
+    bind(pass, program, "u_reach", reach_);
     bind(pass, program, "u_blocks", held_[marks_now_]);
     bind(pass, program, "u_beyond", beyond_);
     draw_into(pass, plan_target_[marks_now_], gl::overwrite_state);
@@ -322,19 +323,21 @@ void BloodGpu::plan(const Pass& pass, const BloodMedium& medium, const DropRange
 void BloodGpu::look_at_tiles(const Pass& pass, const BloodMedium& medium, const DropRange& alive, bool wake) {
     const std::size_t before = marks_now_;
     const bool all = wake || !medium.tools.empty() || medium.flow.w > 0.0F;
+    note_stepped(pass);
     const gl::Program& search = use(pass, Shader::search);
     bind(pass, search, "u_plan", plan_[before]);
     bind(pass, search, "u_blocks", held_[before]);
     bind(pass, search, "u_film", film());
     bind(pass, search, "u_film_before", film_[1 - film_now_]);
     search.set("u_still", still_mm_s * medium.flow.z);
+    search.set("u_rest", medium.flow.y);
     search.set("u_all", all);
     search.set("u_wake", wake);
     draw_into(pass, held_target_[1 - before], gl::overwrite_state);
     pass.draw_fullscreen();
     const gl::Program& scan = use(pass, Shader::scan);
     bind(pass, scan, "u_tiles", marks_[before]);
-    bind(pass, scan, "u_across", across_[before]);
+    bind(pass, scan, "u_reach", reach_);
     bind(pass, scan, "u_blocks", held_[1 - before]);
     scan.set("u_all", all);
     draw_into(pass, marks_target_[1 - before], gl::overwrite_state);
@@ -345,7 +348,7 @@ void BloodGpu::look_at_tiles(const Pass& pass, const BloodMedium& medium, const 
     if (alive.count > 0) {
         mark_drops(pass, medium, alive, false);
     }
-    mark_seams(pass);
+    reach_from_tiles(pass);
     plan(pass, medium, alive);
 
     // A block that is no longer stepped must be the same in both textures, which take turns.
@@ -418,7 +421,7 @@ void BloodGpu::spawn(const Pass& pass, const BloodMedium& medium, std::span<cons
         mark_drops(pass, medium,
                    {static_cast<std::int64_t>(spawns[first].slot), static_cast<std::int64_t>(count)}, false);
     }
-    mark_seams(pass);
+    reach_from_tiles(pass);
 }
 
 void BloodGpu::draw_rows(const Pass& pass, const DropRange& range) const {
@@ -456,23 +459,21 @@ void BloodGpu::step(const Pass& pass, const BloodMedium& medium, const DropRange
         draw_rows(pass, alive);
         drops_now_ = 1 - drops_now_;
     }
-    const gl::Program& program = use(pass, tools ? Shader::film_tools : Shader::film);
+    const bool seams = !seams_->empty();
+    const gl::Program& program = use(pass, tools ? (seams ? Shader::film_tools_seams : Shader::film_tools)
+                                                 : (seams ? Shader::film_seams : Shader::film));
     bind_place(pass, program);
     pass.bind(program, "u_top", "flow_top");
     program.set("u_one", 1.0F);
+    program.set("u_dries", tools || medium.flow.w > 0.0F);
+    if (seams) {
+        bind(pass, program, "u_seam_parts", seams_->first);
+        bind(pass, program, "u_pulls", seams_->pulls);
+    }
     set_medium(program, medium);
     set_tools(pass, program, medium);
     draw_into(pass, film_target_[next], cover_state);
     cover_tiles(pass, program);
-    if (link_count_ > 0) {
-        const gl::Program& links = use(pass, Shader::flow_links);
-        bind(pass, links, "u_film", film());
-        bind(pass, links, "u_links", *links_);
-        bind(pass, links, "u_pulls", *pulls_);
-        set_medium(links, medium);
-        draw_into(pass, film_target_[next], gl::add_blend_state);
-        pass.draw_generated(GL_POINTS, 2 * link_count_, 1);
-    }
     if (alive.count > 0) {
         draw_into(pass, film_target_[next], gl::add_blend_state);
         deposit(pass, medium, alive, deposit_, false, step);
@@ -480,26 +481,34 @@ void BloodGpu::step(const Pass& pass, const BloodMedium& medium, const DropRange
     film_now_ = next;
 }
 
-bool BloodGpu::draw_caps(const Pass& pass, const BloodMedium& medium, const DropRange& alive) {
+void BloodGpu::begin_picture(const Pass& pass, const BloodMedium& medium, const DropRange& alive,
+                             Shown before) {
+    if (before == Shown::unknown) {
+        clear(pass, stepped_target_, 1.0F);
+    }
+    const gl::Program& relief = use(pass, relief_known_ ? Shader::relief_changed : Shader::relief);
+    bind(pass, relief, "u_film", film());
+    draw_into(pass, relief_target_, cover_state);
+    if (relief_known_) {
+        cover_changed(pass, relief, before);
+    } else {
+        pass.draw_fullscreen();
+    }
+    relief_known_ = true;
     if (alive.count <= 0) {
-        return false;
+        return;
     }
-    if (!caps_) {
-        caps_ = gl::Texture::make_2d(*gl_, size_, size_, PixelFormat::r16f, "shapes of drops");
-        caps_target_.emplace(*gl_, *caps_, "shapes of drops");
-    }
-    clear(pass, *caps_target_);
     const gl::Program& program = use(pass, Shader::cap);
     bind_place(pass, program);
     bind(pass, program, "u_drops", drops());
+    bind(pass, program, "u_plan", plan_[marks_now_]);
     pass.bind(program, "u_position", "position");
     pass.bind(program, "u_metric", "metric");
     set_medium(program, medium);
     program.set("u_aspect", medium.drop.x);
     program.set("u_first", static_cast<int>(alive.first % capacity()));
-    draw_into(pass, *caps_target_, gl::max_blend_state);
+    draw_into(pass, relief_target_, gl::max_blend_state);
     pass.draw_generated(GL_TRIANGLE_STRIP, 4, static_cast<int>(2 * alive.count));
-    return true;
 }
 
 void BloodGpu::ask_tiles(std::uint64_t tag) {

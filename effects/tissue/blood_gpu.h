@@ -8,7 +8,7 @@
 
 #include <glm/glm.hpp>
 
-#include "effects/tissue/seam_links.h"
+#include "effects/tissue/blood_seams.h"
 #include "engine/core/shader_source.h"
 #include "engine/gl/framebuffer.h"
 #include "engine/gl/pixel_transfer.h"
@@ -79,12 +79,21 @@ class BloodGpu {
     void spawn(const Pass& pass, const BloodMedium& medium, std::span<const DropSpawn> drops,
                const DropRange& evicted);
     void step(const Pass& pass, const BloodMedium& medium, const DropRange& alive, std::int64_t step);
-    /// Draws the drops' shapes for show(); false when there are none.
-    bool draw_caps(const Pass& pass, const BloodMedium& medium, const DropRange& alive);
-    [[nodiscard]] const gl::Texture& caps() const { return *caps_; }
-    /// Draws over each block that shows blood, in cover_state, with the program in use and into what is
-    /// bound.
-    void cover_visible(const Pass& pass, const gl::Program& program) const;
+    /// What the picture of the blood holds before it is drawn.
+    enum class Shown {
+        last,     ///< what was drawn before the last end_picture()
+        nothing,  ///< its clear value
+        unknown,
+    };
+    /// Finds how high the blood stands.
+    void begin_picture(const Pass& pass, const BloodMedium& medium, const DropRange& alive, Shown before);
+    /// Height of film and drops [mm], -1 where there is no surface.
+    [[nodiscard]] const gl::Texture& relief() const { return relief_; }
+    /// Draws over each block whose look may have changed, in cover_state, with the program in use and into
+    /// what is bound.
+    void cover_changed(const Pass& pass, const gl::Program& program, Shown before) const;
+    /// The picture has been drawn: changes count from now on.
+    void end_picture(const Pass& pass) const;
 
     /// Asks which tiles are to be stepped; the answer comes some frames later with the tag.
     void ask_tiles(std::uint64_t tag);
@@ -102,7 +111,10 @@ class BloodGpu {
     void cover_tiles(const Pass& pass, const gl::Program& program) const;
     void deposit(const Pass& pass, const BloodMedium& medium, const DropRange& range,
                  const gl::Texture& source, bool whole, std::int64_t step) const;
-    void mark_seams(const Pass& pass) const;
+    void mark_pairs(const Pass& pass, const SeamPairs& pairs, const gl::Texture& marked,
+                    const gl::Framebuffer& target) const;
+    void reach_from_tiles(const Pass& pass) const;
+    void note_stepped(const Pass& pass) const;
     void mark_drops(const Pass& pass, const BloodMedium& medium, const DropRange& range,
                     bool blockwise) const;
     void plan(const Pass& pass, const BloodMedium& medium, const DropRange& alive) const;
@@ -117,34 +129,32 @@ class BloodGpu {
     gl::Texture deposit_;
     std::array<gl::Texture, 2> marks_;   ///< of tiles: changed, visible
     std::array<gl::Texture, 2> across_;  ///< of tiles: beyond a seam from marked ones
+    gl::Texture reach_;                  ///< of tiles: marked or beside marked ones
     std::array<gl::Texture, 2> held_;    ///< of blocks: holds blood, changed, shows blood
     gl::Texture beyond_;                 ///< of blocks: beyond a seam from those that hold blood
     std::array<gl::Texture, 2>
-        plan_;  ///< of blocks: to be stepped, to be shown; now and before the last look
+        plan_;             ///< of blocks: to be stepped, to be shown; now and before the last look
+    gl::Texture stepped_;  ///< of blocks: stepped since the picture was drawn, up to the last look
+    gl::Texture relief_;
     gl::Texture spawn_;
     gl::Texture ledger_;  ///< volume that each source has given [mm^3]
-    std::optional<gl::Texture> links_;
-    std::optional<gl::Texture> pulls_;
-    std::optional<gl::Texture> tile_pairs_;   ///< joined by seams
-    std::optional<gl::Texture> block_pairs_;  ///< joined by seams
-    std::optional<gl::Texture> caps_;
+    std::optional<BloodSeams> seams_;
     std::array<gl::Framebuffer, 2> film_target_;
     std::array<gl::Framebuffer, 2> drops_target_;  ///< with the deposit
     std::array<gl::Framebuffer, 2> drops_alone_;
     std::array<gl::Framebuffer, 2> marks_target_;
     std::array<gl::Framebuffer, 2> across_target_;
     std::array<gl::Framebuffer, 2> held_target_;
+    gl::Framebuffer reach_target_;
     gl::Framebuffer beyond_target_;
     std::array<gl::Framebuffer, 2> plan_target_;
+    gl::Framebuffer stepped_target_;
+    gl::Framebuffer relief_target_;
+    bool relief_known_ = false;
     gl::Framebuffer ledger_target_;
-    std::optional<gl::Framebuffer> pulls_target_;
-    std::optional<gl::Framebuffer> caps_target_;
     std::size_t film_now_ = 0;
     std::size_t drops_now_ = 0;
     std::size_t marks_now_ = 0;
-    int link_count_ = 0;
-    int tile_pair_count_ = 0;
-    int block_pair_count_ = 0;
     std::vector<DropSpawn> spawn_rows_;
     gl::ReadBack tile_answers_;
 };

@@ -56,6 +56,7 @@ void BloodState::begin_anew(std::int64_t at, double rate, double drop_life_s) {
     step = at;
     steps_per_s = rate;
     surface_key = 0;
+    shown_version = 0;
     ++version;
     steps_run = looked_run = 0;
     ring.begin(0, static_cast<std::int64_t>(std::ceil((drop_life_s + end_of_life_s) * rate)) + 2);

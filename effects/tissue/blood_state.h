@@ -47,8 +47,10 @@ struct BloodState {
     std::int64_t step = 0;       ///< the next one, on the grid of times
     std::int64_t steps_run = 0;  ///< drops age by these: gaps between frames do not count
     double steps_per_s = 0.0;
-    std::uint64_t version = 0;        ///< of what it shows
-    std::uint64_t shape_key = 0;      ///< of the mesh, the size and the number of drops
+    std::uint64_t version = 0;  ///< of what it shows
+    std::uint64_t shown_version =
+        0;                        ///< of what was shown last: changes count from there; 0: unlike all before
+    std::uint64_t shape_key = 0;  ///< of the mesh, the size and the number of drops
     std::uint64_t gpu_shape_key = 0;  ///< the same, of what `gpu` was made for
     std::uint64_t surface_key = 0;
     std::uint64_t seam_key = 0;

@@ -1,5 +1,6 @@
 #include "effects/tissue/seam_links.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -12,6 +13,19 @@ constexpr double least_weight = 1e-3;
 class Joiner {
   public:
     Joiner(const Image& position, const Image& seam) : position_(position), seam_(seam) {}
+
+    [[nodiscard]] std::vector<SeamJump> jumps() const {
+        std::vector<SeamJump> found;
+        for (int y = 0; y < position_.height; ++y) {
+            for (int x = 0; x < position_.width; ++x) {
+                const glm::ivec2 to(glm::floor(place({x, y}) + 0.5));
+                if (is_gutter({x, y}) && inside(to)) {
+                    found.push_back({y * position_.width + x, to.y * position_.width + to.x});
+                }
+            }
+        }
+        return found;
+    }
 
     std::vector<SeamLink> run() {
         static constexpr std::array<glm::ivec2, 4> sides{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
@@ -43,13 +57,17 @@ class Joiner {
         return static_cast<float>(at.y * position_.width + at.x);
     }
 
+    /// Where the surface goes on, in texels from the centre of the first.
+    [[nodiscard]] glm::dvec2 place(const glm::ivec2& gutter) const {
+        return glm::dvec2(seam_.at(gutter.x, gutter.y, 0), seam_.at(gutter.x, gutter.y, 1)) *
+                   glm::dvec2(position_.width, position_.height) -
+               0.5;
+    }
+
     void join(const glm::ivec2& cell, const glm::ivec2& gutter, int side) {
-        const glm::dvec2 place =
-            glm::dvec2(seam_.at(gutter.x, gutter.y, 0), seam_.at(gutter.x, gutter.y, 1)) *
-                glm::dvec2(position_.width, position_.height) -
-            0.5;
-        const glm::ivec2 low(glm::floor(place));
-        const glm::dvec2 t = place - glm::dvec2(low);
+        const glm::dvec2 at = place(gutter);
+        const glm::ivec2 low(glm::floor(at));
+        const glm::dvec2 t = at - glm::dvec2(low);
         std::array<double, 4> weight{};
         double sum = 0.0;
         for (int n = 0; n < 4; ++n) {
@@ -78,6 +96,32 @@ class Joiner {
 
 std::vector<SeamLink> seam_links(const Image& position, const Image& seam) {
     return Joiner(position, seam).run();
+}
+
+std::vector<SeamJump> seam_jumps(const Image& position, const Image& seam) {
+    return Joiner(position, seam).jumps();
+}
+
+std::vector<SeamLink> links_by_cell(std::span<const SeamLink> links, std::span<float> first) {
+    std::vector<SeamLink> ordered;
+    ordered.reserve(2 * links.size());
+    for (SeamLink link : links) {
+        ordered.push_back(link);
+        link.share = -link.share;
+        ordered.push_back(link);
+    }
+    const auto cell = [](const SeamLink& link) { return link.share > 0.0F ? link.from : link.to; };
+    // Stable: sums of parts must not hang on how a library sorts.
+    std::ranges::stable_sort(ordered, {}, cell);
+    std::ranges::fill(first, -1.0F);
+    for (std::size_t i = 0; i < ordered.size(); ++i) {
+        float& begin = first[static_cast<std::size_t>(cell(ordered[i]))];
+        begin = begin < 0.0F ? static_cast<float>(i) : begin;
+        if (i + 1 == ordered.size() || cell(ordered[i + 1]) != cell(ordered[i])) {
+            ordered[i].side += 4.0F;
+        }
+    }
+    return ordered;
 }
 
 }  // namespace viscera::tissue

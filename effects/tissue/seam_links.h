@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include <glm/glm.hpp>
@@ -12,8 +13,8 @@ namespace viscera::tissue {
 struct SeamLink {
     float from = 0.0F;   ///< cell, x + width * y
     float to = 0.0F;     ///< cell across the seam
-    float side = 0.0F;   ///< of `from`: 0 right, 1 left, 2 top, 3 bottom
-    float share = 0.0F;  ///< of their common face
+    float side = 0.0F;   ///< of `from`: 0 right, 1 left, 2 top, 3 bottom; 4 more: see links_by_cell()
+    float share = 0.0F;  ///< of their common face; negative: see links_by_cell()
 };
 
 /// The parts of all seams. Each face between a cell and its gutter goes to the cells around the point at
@@ -21,5 +22,17 @@ struct SeamLink {
 /// its own faces, which carry the other half. Both chart and texture may lie there in any way. `position`,
 /// `seam`: RGBA32F and RG32F of the bake, of one size.
 [[nodiscard]] std::vector<SeamLink> seam_links(const Image& position, const Image& seam);
+
+/// A texel of a gutter, and the one in which the surface goes on there: x + width * y each.
+struct SeamJump {
+    int gutter = 0;
+    int to = 0;
+};
+[[nodiscard]] std::vector<SeamJump> seam_jumps(const Image& position, const Image& seam);
+
+/// Links in the order of the cells that they change, each twice: once for its `from`, and once for its
+/// `to`, with a negative share. `side` is 4 more in the last one of each cell. `first`, by cell, gets the
+/// index of its first one, or -1.
+[[nodiscard]] std::vector<SeamLink> links_by_cell(std::span<const SeamLink> links, std::span<float> first);
 
 }  // namespace viscera::tissue

@@ -1,12 +1,17 @@
 #version 330 core
+#include "tissue/blood_plan.glsl"
+uniform sampler2D u_film;
 uniform sampler2D u_position;
 uniform float u_aspect;  // height over radius
 flat in vec4 v_cap;
-layout(location = 0) out float o_height;
+layout(location = 0) out float o_height;  // the greatest one stays
 
 void main() {
     vec4 place = texelFetch(u_position, ivec2(gl_FragCoord.xy), 0);
     vec3 away = place.xyz - v_cap.xyz;
     float inside = 1.0 - dot(away, away) / (v_cap.w * v_cap.w);
-    o_height = place.w > 0.0 ? u_aspect * v_cap.w * max(inside, 0.0) : 0.0;
+    vec4 film = texelFetch(u_film, ivec2(gl_FragCoord.xy), 0);
+    // Drops stand on the film. What is not stepped is not drawn again before the next picture.
+    bool drawn = inside > 0.0 && film.w != 0.0 && texelFetch(u_plan, ivec2(gl_FragCoord.xy) / block_side, 0).r > 0.5;
+    o_height = drawn ? max(film.x + film.y, 0.0) + u_aspect * v_cap.w * inside : -1.0;
 }

@@ -1,7 +1,7 @@
 #version 330 core
 // What drives a film through the parts of seams. A part joins a cell to one across the seam as if they were neighbours; its share of
 // their common face is at most one half, since the other side has parts of its own there.
-uniform sampler2D u_links;  // cell, cell across, side (0 right, 1 left, 2 top, 3 bottom), share
+uniform sampler2D u_links;  // cell, cell across, side (0 right, 1 left, 2 top, 3 bottom; 4 more: its last one), share (negative: as seen from across)
 uniform sampler2D u_position;
 uniform sampler2D u_normal;
 uniform sampler2D u_metric;
@@ -11,7 +11,7 @@ uniform vec3 u_down;
 uniform float u_strength;
 uniform float u_spreading;
 
-layout(location = 0) out vec4 o_link;  // spread, drive [mm], area [mm^2]
+layout(location = 0) out vec4 o_link;  // spread, drive [mm], area [mm^2]; the other cell plus 1, negative in the last one
 
 ivec2 last;
 
@@ -26,14 +26,16 @@ bool joined(ivec2 at) {
 void main() {
     vec4 link = texelFetch(u_links, ivec2(gl_FragCoord.xy), 0);
     o_link = vec4(0.0);
-    if (!(link.w > 0.0)) {
+    if (link.w == 0.0) {
         return;
     }
+    float part = abs(link.w);
+    bool from_across = link.w < 0.0;
     last = textureSize(u_position, 0) - 1;
     int width = last.x + 1;
     ivec2 from = ivec2(int(link.x) % width, int(link.x) / width);
     ivec2 to = ivec2(int(link.y) % width, int(link.y) / width);
-    int side = int(link.z);
+    int side = int(link.z) & 3;
     ivec2 axis = side < 2 ? ivec2(1 - 2 * side, 0) : ivec2(0, 5 - 2 * side);
     ivec2 along = abs(axis.yx);
     vec4 metric = texelFetch(u_metric, from, 0);
@@ -53,5 +55,8 @@ void main() {
     vec2 flow = abs(texelFetch(u_gravity, from, 0).xy);
     float sum = flow.x + flow.y;
     float share = sum > 0.0 ? 0.4 + 2.4 * (side < 2 ? flow.x : flow.y) / sum : 1.0;
-    o_link = vec4(link.w * u_strength * vec2(conductance * n, drive), area > 0.0 ? link.w * share * area : 0.0, 0.0);
+    float other = (from_across ? link.x : link.y) + 1.0;
+    // Seen from the other side everything is the same but the sign.
+    o_link = vec4(part * u_strength * vec2(conductance * n, from_across ? -drive : drive), area > 0.0 ? part * share * area : 0.0,
+                  link.z > 3.5 ? -other : other);
 }

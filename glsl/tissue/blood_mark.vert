@@ -3,7 +3,6 @@
 #ifdef SEAMS
 uniform sampler2D u_pairs;   // one side, other side: x, y each, of tiles or blocks that a seam joins
 uniform sampler2D u_marked;
-uniform float u_extent;      // of the mark
 #else
 #include "tissue/blood_drop.glsl"
 uniform sampler2D u_drops;
@@ -26,7 +25,6 @@ void main() {
         most = max(most, texelFetch(u_marked, clamp(ivec2(pair.xy) + ivec2(i % 3 - 1, i / 3 - 1), ivec2(0), last), 0).r);
     }
     if (most > 0.5) {
-        gl_PointSize = u_extent;
         gl_Position = vec4(2.0 * (pair.zw + 0.5) / vec2(last + 1) - 1.0, 0.0, 1.0);
     }
 #else

@@ -7,7 +7,8 @@ uniform sampler2D u_film_before;  // one step ago
 uniform float u_still;            // a change per step below which a film stands [mm]
 uniform bool u_all;               // whatever shows blood is stepped: it dries, or a tool is at work
 uniform bool u_wake;              // the surface is another
-layout(location = 0) out vec4 o_block;  // holds blood or owes some; something changed; shows blood; has no surface
+uniform float u_rest;             // thickness that does not flow [mm]
+layout(location = 0) out vec4 o_block;  // holds blood that may flow, or owes some; something changed; shows blood; has no surface
 
 void main() {
     ivec2 block = ivec2(gl_FragCoord.xy);
@@ -26,11 +27,12 @@ void main() {
         surface = max(surface, abs(film.w));
         vec2 before = texelFetch(u_film_before, at, 0).xy;
         most = max(most, now.x + now.y);
-        held = max(held, max(max(abs(now.x), abs(now.y)), max(abs(before.x), abs(before.y))));
+        float flowing = max(max(now.x, before.x) - u_rest, max(abs(now.y), abs(before.y)));
+        held = max(held, u_all ? max(flowing, max(now.x, before.x)) : flowing);
         change = max(change, abs((now.x - before.x) + (now.y - before.y)));
     }
     bool shows = stepped ? most > 0.0 : before_all.b > 0.5;
-    bool holds = stepped ? held > 0.0 : before_all.r > 0.5;
+    bool holds = stepped ? held > 0.0 : (u_all ? before_all.b : before_all.r) > 0.5;
     bool bare = !u_wake && (stepped ? surface == 0.0 : before_all.a > 0.5);
     o_block = vec4(holds, change > u_still || (u_all && shows), shows, bare);
 }

@@ -6,6 +6,10 @@ uniform vec2 u_size;  // of the target [texels]
 #ifdef SETTLED
 uniform sampler2D u_plan_before;
 #endif
+#ifdef CHANGED
+uniform sampler2D u_stepped;  // r: stepped since the picture was drawn
+uniform bool u_whole;         // the picture holds nothing yet
+#endif
 
 void main() {
     ivec2 blocks = textureSize(u_plan, 0);
@@ -14,8 +18,9 @@ void main() {
 #ifdef SETTLED
     // Stepped until now.
     bool drawn = plan.r < 0.5 && texelFetch(u_plan_before, block, 0).r > 0.5;
-#elif defined(VISIBLE)
-    bool drawn = plan.g > 0.5;
+#elif defined(CHANGED)
+    float stepped = texelFetch(u_stepped, block, 0).r;
+    bool drawn = max(stepped, plan.r) > 0.5 || (u_whole && plan.g > 0.5);
 #else
     bool drawn = plan.r > 0.5;
 #endif

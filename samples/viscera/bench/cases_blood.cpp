@@ -29,8 +29,10 @@ nlohmann::json blood_scene(Lab& lab, const nlohmann::json& wounds, int max_drops
         .target("copy", "rgba32f")
         .pass("source", "bench.source", {{"amount", 1.0}}, {{"out", "picture"}})
         .pass("copy", "bench.copy1", nullptr, {{"a", "picture"}, {"out", "copy"}});
+    // All that blood reads is an output: what is not may lose its texture to another pass, and is made again.
     for (const char* name : {"tissue.blood_height", "tissue.blood_color", "tissue.blood_normal", "copy",
-                             "tissue.flow_right", "tissue.flow_top", "tissue.position", "tissue.metric"}) {
+                             "tissue.gravity", "tissue.flow_right", "tissue.flow_top", "tissue.position",
+                             "tissue.normal", "tissue.metric", "tissue.seam"}) {
         scene.output(name);
     }
     return scene.json();
