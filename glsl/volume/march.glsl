@@ -41,12 +41,9 @@ void march(Ray ray, vec2 interval, float offset, inout State state) {
         uint kind = run_empty;
         bool leaping = true;
         while (leaping) {
-            // A slab belongs to the brick of its centre, whose range covers the whole slab: its border is that wide.
-            float place = float(end) + 0.5;
-#ifdef COORDINATES
-            place = min(place, 0.5 * (float(end) + slabs));  // the last slab ends with the volume
-#endif
-            Run run = run_from(leaper, place);
+            // A slab belongs to the brick of its centre, whose range covers the whole slab: its border is that wide. The last
+            // slab ends with the interval: the centre of a whole one may lie outside the volume or the crop.
+            Run run = run_from(leaper, min(float(end) + 0.5, 0.5 * (float(end) + slabs)));
             bool goes_on = run.kind == kind;
             bool begins = kind == run_empty;
             end = goes_on || begins ? min(end + 1 + int(min(run.extent, float(count))), last) : end;

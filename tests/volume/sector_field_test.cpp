@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/reference/volume_field.h"
 #include "tests/reference/volume_sector.h"
 #include "tests/volume/sector_stage.h"
 
@@ -159,6 +160,157 @@ TEST(SectorFields, VoxelsAsDoublePrecisionInterpolatesThem) {
         worst = std::max(worst, m.worst);
     }
     std::printf("  worst %.1e\n", worst);
+}
+
+/// The prefiltered B-spline through the samples of a ring or a sector, in double precision: along a ring
+/// three turns of them are filtered, of which the middle one does not feel the ends.
+std::function<double(const glm::dvec3&)> spline_of(const Volume& volume) {
+    const glm::ivec3 n = volume.grid.dims;
+    const int ring = volume.grid.shape.wrap_axis();
+    glm::ivec3 turns(1);
+    if (ring >= 0) {
+        turns[ring] = 3;
+    }
+    const glm::ivec3 all = n * turns;
+    std::vector<double> samples;
+    for (int k = 0; k < all.z; ++k) {
+        for (int j = 0; j < all.y; ++j) {
+            for (int i = 0; i < all.x; ++i) {
+                samples.push_back(volume.stored(glm::ivec3(i, j, k) % n));
+            }
+        }
+    }
+    const reference::Field field(all, std::move(samples), reference::Filter::bspline_prefiltered);
+    const ShapeAxes axes = axes_of(volume.grid.shape, n);
+    return [=, shape = volume.grid.shape](const glm::dvec3& frame) {
+        glm::dvec3 index = (from_frame(shape, frame) - axes.first) / axes.step;
+        if (ring >= 0) {
+            index[ring] -= n[ring] * std::floor(index[ring] / n[ring]);
+            index[ring] += n[ring];
+        }
+        return field.value((index + 0.5) / glm::dvec3(all));
+    };
+}
+
+TEST(SectorFields, PolynomialsFromVoxelsAsDoublePrecisionSplines) {
+    double worst = 0.0;
+    double off = 0.0;
+    VolumeStage stage;
+    for (const Polynomial& p : polynomials()) {
+        SCOPED_TRACE(p.name);
+        for (const NamedShape& named : some_shapes()) {
+            if (named.shape.kind != p.kind || !named.shape.wrap || named.shape.latitude_rad == 1.6) {
+                continue;
+            }
+            const glm::ivec3 n =
+                p.kind == VolumeKind::cylindrical ? glm::ivec3(12, 36, 8) : glm::ivec3(36, 19, 12);
+            const Volume made =
+                sector_volume(named.shape, n, [&](const glm::dvec3& f) { return p.value(f / radius_mm); });
+            const auto spline = spline_of(made);
+            const LiveVolume volume(made);
+            const std::vector<Look> all = looks(made.grid);
+            // Aslant, along the axis, and from its end: across the seam, the axis and the poles.
+            for (const std::size_t view : {0U, 1U, 3U}) {
+                const Look& look = all[view];
+                const Shot shot = stage.cast(volume, xray(0.1, "bspline_fp32"), look, glm::ivec2(16));
+                const Miss m = miss(shot, wanted(made.grid, shot, look.near_mm, spline, 60));
+                EXPECT_LE(m.worst, 1e-5) << named.name << " view " << view << " pixel " << m.x << ", " << m.y;
+                EXPECT_GT(m.pixels, 40) << named.name;
+                worst = std::max(worst, m.worst);
+                off = std::max(off,
+                               miss(shot, wanted(
+                                              made.grid, shot, look.near_mm,
+                                              [&](const glm::dvec3& f) { return p.value(f / radius_mm); }, 6))
+                                   .worst);
+            }
+        }
+    }
+    std::printf("  worst %.1e; from the polynomial itself, which so few voxels hold no better, %.1e\n", worst,
+                off);
+}
+
+TEST(SectorFields, GradientsAreThoseOfTheWorldNextToAxisPolesAndCentre) {
+    // A linear field has one gradient everywhere. In the picture: what metric() makes of the field's own
+    // slopes.
+    const glm::dvec3 normal(0.48, -0.6, 0.64);
+    const std::string n = "vec3 n = " + glsl(normal) + ";\n";
+    const std::string turned = "vec2 t = vec2(cos(a), sin(a));\n";
+    double worst = 0.0;
+    for (const VolumeKind kind : {VolumeKind::cylindrical, VolumeKind::spherical}) {
+        const bool cylinder = kind == VolumeKind::cylindrical;
+        const std::string slopes =
+            cylinder
+                ? "float a = c.y;\n" + turned +
+                      "return vec3(dot(n.xy, t), c.x * dot(n.xy, vec2(-t.y, t.x)), n.z)"
+                : "float a = c.x;\n" + turned +
+                      "float u = dot(n.xy, t);\n"
+                      "return vec3(c.z * cos(c.y) * dot(n.xy, vec2(-t.y, t.x)),\n"
+                      "            c.z * (n.z * cos(c.y) - u * sin(c.y)), n.z * sin(c.y) + u * cos(c.y))";
+        constexpr std::array<std::string_view, 1> functions{"finish"};
+        VolumeStage stage(
+            {{"volume/sample.glsl",
+              "#include \"volume/storage.glsl\"\n"
+              "float sample_volume(vec3 place) { return 0.0; }\n"
+              "vec3 sample_gradient(vec3 place) {\n"
+              "    vec3 c = (place - u_sample_offset) / u_sample_scale;\n" +
+                  n + slopes + " / u_sample_scale;\n}\n"},
+             {"volume/march.glsl",
+              "uniform float u_slab;\n"
+              "void march(Ray ray, vec2 interval, float offset, inout State state) {\n"
+              "    if (interval.y > interval.x && state.depth == 0.0) {\n"
+              "        vec3 local = ray.origin + 0.5 * (interval.x + interval.y) * ray.direction;\n"
+              "        state.colour = metric(sample_gradient(to_sample(local)), local);\n"
+              "        state.depth = length(local.xy);\n"
+              "    }\n"
+              "}\n"},
+             {"volume/function_composite.glsl",
+              wrapped("volume/function_composite.glsl", functions,
+                      "vec4 finish(State state) { return vec4(state.colour, state.depth); }\n")}});
+        VolumeShape shape = some_shapes()[cylinder ? 0 : 6].shape;
+        shape.first_angle_rad = -0.5 * shape.angle_rad;
+        // Fine along the radius: nearer than a hundredth of a voxel directions about the axis are not
+        // resolved.
+        const int radial = 1024;
+        const LiveVolume volume(
+            sector_noise(shape, cylinder ? glm::ivec3(radial, 8, 4) : glm::ivec3(8, 4, radial), 1));
+        const double guard = 0.01 / (radial - 1);
+        const VolumeGrid& grid = volume.volume().grid;
+        const glm::dvec3 axis = grid.direction[2];
+        const glm::dvec3 wanted_gradient = grid.direction * normal / radius_mm;
+        const glm::dvec3 middle = sector_centre(grid);
+        // Parallel rays along the axis, all of them within that distance of it, and from its end at a slant.
+        for (const double height_mm : {90.0, 3.0, 0.1, 0.004}) {
+            for (const bool slant : {false, true}) {
+                const Look look{
+                    .eye_mm = middle + 200.0 * (slant ? grid.direction * glm::dvec3(0.6, 0.3, 0.74) : axis),
+                    .target_mm = middle,
+                    .up = {0, 1, 0},
+                    .orthographic_mm = height_mm};
+                const Shot shot =
+                    stage.cast(volume,
+                               {{"sampling", {{"skip", false}}},
+                                {"transfer_function", {{"points", {{{"value", 0}, {"opacity", 0.1}}}}}}},
+                               look, glm::ivec2(20));
+                int compared = 0;
+                for (int i = 0; i < 400; ++i) {
+                    const glm::dvec4 got = shot.at(i % 20, i / 20);
+                    if (got.w <= guard) {
+                        continue;
+                    }
+                    ++compared;
+                    const double error = glm::length(glm::dvec3(got) - wanted_gradient) * radius_mm;
+                    // Texture coordinates are rounded by 2^-25, which is so much more of a small radius; the
+                    // rest is what sines and cosines lose.
+                    const double bound = std::exp2(-24.0) / got.w + 2e-6;
+                    EXPECT_LE(error, bound)
+                        << i % 20 << ", " << i / 20 << " at " << got.w << " of " << height_mm;
+                    worst = std::max(worst, error / bound);
+                }
+                EXPECT_GT(compared, 150);
+            }
+        }
+    }
+    std::printf("  %.2f of what rounding explains\n", worst);
 }
 
 /// The samples along the angle counted on from another one, and the frame turned back by as much.

@@ -90,6 +90,30 @@ TEST_F(Skipping, ChangesNoBitUnderAnyFilter) {
     expect_same(raw, look_);
 }
 
+TEST_F(Skipping, ChangesNoBitWhereTheLastSlabIsLongerThanWhatIsLeft) {
+    // The middle of a whole slab may then lie outside the crop, or behind a sub-volume's end, in a brick of
+    // another kind.
+    std::mt19937 random(31);
+    std::uniform_real_distribution<double> unit(-1.0, 1.0);
+    for (const char* scheme : {"midpoint", "gauss", "preintegrated"}) {
+        for (const double step : {1.3, 9.0}) {
+            nlohmann::json p = parameters("composite", scheme, "linear");
+            p["sampling"]["step"] = step;
+            for (int view = 0; view < 2; ++view) {
+                const Look look{
+                    .eye_mm = 190.0 * glm::normalize(glm::dvec3(unit(random), unit(random), unit(random))),
+                    .fov_deg = 24};
+                nlohmann::json cropped = p;
+                cropped["crop"] = {{"first", {9, 4, 13}}, {"size", {22, 30, 15}}};
+                expect_same(cropped, look, 0);
+                nlohmann::json behind = p;
+                behind["sub_volume"] = {{"depth_mm", 31.0}};
+                expect_same(behind, look, 0);
+            }
+        }
+    }
+}
+
 TEST_F(Skipping, ChangesNoBitForJitterLongStepsCropAndPlacement) {
     nlohmann::json p = parameters("composite", "gauss", "linear");
     for (const double step : {0.1, 0.77, 3.0}) {
