@@ -21,6 +21,8 @@ constexpr std::int64_t steps_per_look = 8;
 constexpr double longest_gap_s = 0.5;
 constexpr double smallest_drop_share = 0.02;
 constexpr double latest_s = 1.0e9;
+// For as many wounds each triangle is looked at; for more they are put into a tree first.
+constexpr std::size_t few_wounds = 16;
 // Drops of a jet in those of a wound: it is finer.
 constexpr double jet_drop_share = 0.25;
 
@@ -45,7 +47,7 @@ BloodEffect::~BloodEffect() = default;
 
 void BloodEffect::validate() const {
     if (params_.wounds.size() > most_wounds) {
-        throw Error(ErrorCode::scene, "/wounds", "has more than 64 wounds");
+        throw Error(ErrorCode::scene, "/wounds", "has more than 65536 wounds");
     }
     if (params_.tools.size() > most_tools) {
         throw Error(ErrorCode::scene, "/tools", "has more than 16 tools");
@@ -173,19 +175,38 @@ std::size_t BloodEffect::working_tools(std::int64_t step) const {
 
 void BloodEffect::find_places() {
     places_.resize(wounds_.size());
+    const auto is_old = [this](std::size_t i) {
+        return places_[i].position_mm != wounds_[i].position_mm || places_[i].surface_key != surface_key_;
+    };
+    std::size_t old = 0;
     for (std::size_t i = 0; i < wounds_.size(); ++i) {
-        Place& place = places_[i];
-        if (place.position_mm == wounds_[i].position_mm && place.surface_key == surface_key_) {
+        old += is_old(i) ? 1 : 0;
+    }
+    if (old > few_wounds) {
+        update_tree();
+    }
+    for (std::size_t i = 0; old > 0 && i < wounds_.size(); ++i) {
+        if (!is_old(i)) {
             continue;
         }
-        place = {.position_mm = wounds_[i].position_mm, .surface_key = surface_key_};
-        if (const auto nearest = nearest_point(mesh_->data(), to_world_, wounds_[i].position_mm)) {
-            place.found = true;
-            place.uv = glm::vec2(nearest->uv - glm::floor(nearest->uv));
+        const glm::dvec3& at = wounds_[i].position_mm;
+        places_[i] = {.position_mm = at, .surface_key = surface_key_};
+        const auto nearest =
+            tree_key_ == surface_key_ ? tree_.nearest(at) : nearest_point(mesh_->data(), to_world_, at);
+        if (nearest) {
+            places_[i].found = true;
+            places_[i].uv = glm::vec2(nearest->uv - glm::floor(nearest->uv));
         }
     }
-    for (std::size_t i = 0; i < places_.size(); ++i) {
-        state_->wound_uvs[i] = medium_.wound_uvs[i] = places_[i].uv;
+    if (state_->meters.size() < wounds_.size()) {
+        state_->meters.resize(wounds_.size());
+    }
+}
+
+void BloodEffect::update_tree() {
+    if (tree_key_ != surface_key_) {
+        tree_key_ = surface_key_;
+        tree_ = TriangleTree(mesh_->data(), to_world_);
     }
 }
 
@@ -249,15 +270,13 @@ void BloodEffect::collect_drops(std::int64_t step) {
         const auto drops = state_->meters[i].flow(wound.rate_mm3_s * pulse_of(wound, time) * dt,
                                                   params_.liquid.drop_mm3 * (flies ? jet_drop_share : 1.0));
         if (flies) {
-            state_->jets.leave(wound, static_cast<std::uint32_t>(i), drops, pulse_of(wound, time),
-                               gravity_mm_s2(), dt);
+            state_->jets.leave(wound, places_[i].uv, drops, pulse_of(wound, time), gravity_mm_s2(), dt);
             continue;
         }
         for (int n = 0; n < drops.count; ++n) {
             spawns_.push_back({.uv = places_[i].uv,
                                .volume_mm3 = static_cast<float>(drops.volume_mm3),
-                               .radius_mm = static_cast<float>(wound.radius_mm),
-                               .source = static_cast<float>(i)});
+                               .radius_mm = static_cast<float>(wound.radius_mm)});
         }
     }
     fly(dt);
@@ -274,13 +293,29 @@ void BloodEffect::fly(double dt) {
     if (state_->jets.particles().empty()) {
         return;
     }
-    if (tree_key_ != surface_key_) {
-        tree_key_ = surface_key_;
-        tree_ = TriangleTree(mesh_->data(), to_world_);
-    }
+    update_tree();
     state_->jets.step(tree_, gravity_mm_s2(), dt, spawns_);
     state_->bled = state_->moving = true;
     state_->disturbed_at = state_->looks + 1;
+}
+
+void BloodEffect::spawn(const Pass& pass) {
+    BloodState& state = *state_;
+    const std::int64_t capacity = state.gpu->capacity();
+    // More than the ring holds come in turns, each of which becomes film for the next.
+    const std::size_t most = static_cast<std::size_t>(capacity);
+    for (std::size_t first = 0; first < spawns_.size(); first += most) {
+        const std::span<DropSpawn> drops =
+            std::span(spawns_).subspan(first, std::min(most, spawns_.size() - first));
+        const std::int64_t head = state.ring.head();
+        const DropRange evicted = state.ring.add(static_cast<std::int64_t>(drops.size()), capacity);
+        for (std::size_t i = 0; i < drops.size(); ++i) {
+            drops[i].slot = static_cast<float>((head + static_cast<std::int64_t>(i)) % capacity);
+        }
+        state.gpu->spawn(pass, medium_, drops, evicted);
+        state.bled = state.moving = true;
+        state.disturbed_at = state.looks + 1;
+    }
 }
 
 void BloodEffect::run_step(const Pass& pass) {
@@ -304,17 +339,7 @@ void BloodEffect::run_step(const Pass& pass) {
         state.disturbed_at = state.looks + 1;
     }
     state.tool_count = medium_.tools.size();
-    if (!spawns_.empty()) {
-        const std::int64_t capacity = state.gpu->capacity();
-        const std::int64_t head = state.ring.head();
-        const DropRange evicted = state.ring.add(static_cast<std::int64_t>(spawns_.size()), capacity);
-        for (std::size_t i = 0; i < spawns_.size(); ++i) {
-            spawns_[i].slot = static_cast<float>((head + static_cast<std::int64_t>(i)) % capacity);
-        }
-        state.gpu->spawn(pass, medium_, spawns_, evicted);
-        state.bled = state.moving = true;
-        state.disturbed_at = state.looks + 1;
-    }
+    spawn(pass);
     state.gpu->step(pass, medium_, state.ring.alive(), step);
     ++state.step;
 }

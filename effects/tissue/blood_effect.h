@@ -34,6 +34,8 @@ class BloodEffect final : public Effect {
     };
     void check_sizes(const Prepare& prepare) const;
     void find_places();
+    void update_tree();
+    void spawn(const Pass& pass);
     [[nodiscard]] bool bleeds(std::int64_t first, std::int64_t last) const;
     [[nodiscard]] std::size_t working_tools(std::int64_t step) const;
     void set_medium();

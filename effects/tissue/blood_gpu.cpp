@@ -39,10 +39,8 @@ enum class Shader : std::size_t {
 constexpr int tile_side = 32;
 constexpr int block_side = 8;  // divides a tile's
 constexpr int ring_width = 256;
-constexpr int spawn_width = 128;  // two texels for each drop
-constexpr int spawn_rows = 16;
 constexpr int deposit_points = 4;
-constexpr int sources = 64;
+constexpr int ledger_width = 1024;
 // Marks are points as large as what they mark.
 constexpr gl::RasterState mark_state = [] {
     gl::RasterState state = gl::max_blend_state;
@@ -143,8 +141,7 @@ BloodGpu::BloodGpu(const gl::Functions& gl, int size, int max_drops)
       plan_(pair_of(gl, blocks_, blocks_, PixelFormat::rg8, "blocks to be stepped")),
       stepped_(gl::Texture::make_2d(gl, blocks_, blocks_, PixelFormat::r8, "blocks stepped")),
       relief_(gl::Texture::make_2d(gl, size, size, PixelFormat::r32f, "relief of blood")),
-      spawn_(gl::Texture::make_2d(gl, spawn_width, spawn_rows, PixelFormat::rgba32f, "new drops of blood")),
-      ledger_(gl::Texture::make_2d(gl, sources, 1, PixelFormat::r32f, "blood by source")),
+      ledger_(gl::Texture::make_2d(gl, ledger_width, 1, PixelFormat::r32f, "blood given")),
       film_target_(targets_of(gl, film_, "film of blood")),
       drops_target_{with_deposit(gl, drops_[0], deposit_), with_deposit(gl, drops_[1], deposit_)},
       drops_alone_(targets_of(gl, drops_, "drops of blood")),
@@ -156,8 +153,7 @@ BloodGpu::BloodGpu(const gl::Functions& gl, int size, int max_drops)
       plan_target_(targets_of(gl, plan_, "blocks to be stepped")),
       stepped_target_(gl, stepped_, "blocks stepped"),
       relief_target_(gl, relief_, "relief of blood"),
-      ledger_target_(gl, ledger_, "blood by source"),
-      spawn_rows_(static_cast<std::size_t>(spawn_width / 2 * spawn_rows)),
+      ledger_target_(gl, ledger_, "blood given"),
       tile_answers_(gl) {}
 
 std::int64_t BloodGpu::capacity() const {
@@ -374,7 +370,6 @@ void BloodGpu::deposit(const Pass& pass, const BloodMedium& medium, const DropRa
 
 void BloodGpu::spawn(const Pass& pass, const BloodMedium& medium, std::span<const DropSpawn> spawns,
                      const DropRange& evicted) {
-    const std::size_t batch = spawn_rows_.size();
     if (evicted.count > 0) {
         mark_drops(pass, medium, evicted, true);
         // Into the texture that is read next: what is added to it is owed to the film in the next step. The
@@ -392,35 +387,31 @@ void BloodGpu::spawn(const Pass& pass, const BloodMedium& medium, std::span<cons
         draw_into(pass, film_target_[film_now_], gl::add_blend_state);
         pass.draw_generated(GL_POINTS, static_cast<int>(evicted.count) * deposit_points, 1);
     }
-    for (std::size_t first = 0; first < spawns.size(); first += batch) {
-        const std::size_t count = std::min(batch, spawns.size() - first);
-        const int rows = static_cast<int>((2 * count + spawn_width - 1) / spawn_width);
-        std::ranges::copy(spawns.subspan(first, count), spawn_rows_.begin());
-        spawn_.upload_region(
-            {0, 0, 0}, {spawn_width, rows, 1},
-            std::as_bytes(std::span(spawn_rows_).first(static_cast<std::size_t>(rows) * spawn_width / 2)));
-        const bool energy = pass.has("energy");
-        for (const bool counts : {false, true}) {
-            const gl::Program& program =
-                use(pass, counts ? (energy ? Shader::counted_energy : Shader::counted)
-                                 : (energy ? Shader::spawned_energy : Shader::spawned));
-            bind_place(pass, program);
-            bind(pass, program, "u_spawn", spawn_);
-            pass.bind(program, "u_metric", "metric");
-            if (energy) {
-                pass.bind(program, "u_energy", "energy");
-                program.set("u_sealed", medium.sealed_energy);
-                program.set("u_source", std::span<const glm::vec2>(medium.wound_uvs));
-            }
-            program.set("u_ring",
-                        counts ? glm::ivec2(sources, 1) : glm::ivec2(drops_[0].width(), drops_[0].height()));
-            draw_into(pass, counts ? ledger_target_ : drops_alone_[drops_now_],
-                      counts ? gl::add_blend_state : gl::overwrite_state);
-            pass.draw_generated(GL_POINTS, static_cast<int>(count), 1);
-        }
-        mark_drops(pass, medium,
-                   {static_cast<std::int64_t>(spawns[first].slot), static_cast<std::int64_t>(count)}, false);
+    spawn_items_.clear();
+    for (const DropSpawn& drop : spawns) {
+        spawn_items_.emplace_back(drop.uv, drop.volume_mm3, drop.radius_mm);
+        spawn_items_.emplace_back(drop.slot, drop.seed, drop.sealed_at);
     }
+    spawn_.upload(*gl_, spawn_items_, "new drops of blood");
+    const bool energy = pass.has("energy");
+    for (const bool counts : {false, true}) {
+        const gl::Program& program = use(pass, counts ? (energy ? Shader::counted_energy : Shader::counted)
+                                                      : (energy ? Shader::spawned_energy : Shader::spawned));
+        bind_place(pass, program);
+        bind(pass, program, "u_spawn", spawn_.texture());
+        pass.bind(program, "u_metric", "metric");
+        if (energy) {
+            pass.bind(program, "u_energy", "energy");
+            program.set("u_sealed", medium.sealed_energy);
+        }
+        program.set("u_ring",
+                    counts ? glm::ivec2(ledger_width, 1) : glm::ivec2(drops_[0].width(), drops_[0].height()));
+        draw_into(pass, counts ? ledger_target_ : drops_alone_[drops_now_],
+                  counts ? gl::add_blend_state : gl::overwrite_state);
+        pass.draw_generated(GL_POINTS, static_cast<int>(spawns.size()), 1);
+    }
+    mark_drops(pass, medium,
+               {static_cast<std::int64_t>(spawns[0].slot), static_cast<std::int64_t>(spawns.size())}, false);
     reach_from_tiles(pass);
 }
 

@@ -9,6 +9,7 @@
 #include <glm/glm.hpp>
 
 #include "effects/tissue/blood_seams.h"
+#include "effects/tissue/list_texture.h"
 #include "engine/core/shader_source.h"
 #include "engine/gl/framebuffer.h"
 #include "engine/gl/pixel_transfer.h"
@@ -22,15 +23,15 @@ class Pass;
 
 namespace viscera::tissue {
 
-/// A drop to be, as the shader reads it (two RGBA32F texels).
+/// A drop to be, as the shader reads it: two texels.
 struct DropSpawn {
     glm::vec2 uv{0.0F};
     float volume_mm3 = 0.0F;
     float radius_mm = 0.0F;  ///< of the place around `uv` in which it appears
     float slot = 0.0F;       ///< in the ring
     float seed = 0.0F;
-    float source = 0.0F;
-    float sealed_at_source = 0.0F;  ///< 1: the wound's own tissue decides whether it bleeds, not the place
+    /// UV of the tissue that decides whether it comes; negative: the place in which it appears does.
+    glm::vec2 sealed_at{-1.0F};
 };
 
 /// What the steps of one frame have in common, as the shaders want it.
@@ -42,7 +43,6 @@ struct BloodMedium {
     float spreading = 0.0F;  ///< see GravityParams
     float sealed_energy = 1.0F;
     bool open_edges = true;
-    std::array<glm::vec2, 64> wound_uvs{};
     std::vector<glm::vec4> tools;        ///< place [mm], radius [mm]
     std::vector<glm::vec2> tool_powers;  ///< see tool_power()
 };
@@ -136,8 +136,8 @@ class BloodGpu {
         plan_;             ///< of blocks: to be stepped, to be shown; now and before the last look
     gl::Texture stepped_;  ///< of blocks: stepped since the picture was drawn, up to the last look
     gl::Texture relief_;
-    gl::Texture spawn_;
-    gl::Texture ledger_;  ///< volume that each source has given [mm^3]
+    ListTexture spawn_;
+    gl::Texture ledger_;  ///< volume given [mm^3], in parts
     std::optional<BloodSeams> seams_;
     std::array<gl::Framebuffer, 2> film_target_;
     std::array<gl::Framebuffer, 2> drops_target_;  ///< with the deposit
@@ -155,7 +155,7 @@ class BloodGpu {
     std::size_t film_now_ = 0;
     std::size_t drops_now_ = 0;
     std::size_t marks_now_ = 0;
-    std::vector<DropSpawn> spawn_rows_;
+    std::vector<glm::vec4> spawn_items_;
     gl::ReadBack tile_answers_;
 };
 

@@ -161,7 +161,7 @@ void BloodParams::visit(ParamVisitor& v) {
             open_edges);
     v.field({.name = "liquid", .doc = "What blood is like."}, liquid);
     v.field({.name = "look", .doc = "What it looks like."}, look);
-    v.field({.name = "wounds", .doc = "Places that bleed, at most 64 with the host's."}, wounds);
+    v.field({.name = "wounds", .doc = "Places that bleed, at most 65536 with the host's."}, wounds);
     v.field({.name = "tools", .doc = "Suction and rinsing, at most 16 with the host's."}, tools);
     v.field(
         {.name = "host_emitters", .doc = "Name of the host's array of wounds, 12 floats each; empty: none."},

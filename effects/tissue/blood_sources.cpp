@@ -63,7 +63,7 @@ void collect_wounds(const BloodParams& params, const HostValues* values, Log& lo
             return;
         }
         if (wounds.size() >= most_wounds) {
-            log.fault("tissue.too_many_wounds", "more than 64 wounds; the others do not bleed");
+            log.fault("tissue.too_many_wounds", "more than 65536 wounds; the others do not bleed");
             return;
         }
         wounds.push_back(wound);

@@ -13,7 +13,7 @@ class Log;
 
 namespace viscera::tissue {
 
-inline constexpr std::size_t most_wounds = 64;
+inline constexpr std::size_t most_wounds = 65536;
 inline constexpr std::size_t most_tools = 16;
 
 /// Floats per wound in the host's array: place [mm] x y z, radius [mm], rate [mm^3/s], kind (0 ooze, 1 jet),

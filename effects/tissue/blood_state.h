@@ -64,7 +64,6 @@ struct BloodState {
     std::uint32_t seed = 0;
     Jets jets;
     bool jets_bleed = false;  ///< a wound sends out a jet in this frame
-    std::array<glm::vec2, most_wounds> wound_uvs{};
 
     /// The state of a name, made when it is first asked for.
     [[nodiscard]] static std::shared_ptr<BloodState> find(Assets& assets, std::string_view name);

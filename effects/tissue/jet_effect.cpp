@@ -10,9 +10,6 @@
 namespace viscera::tissue {
 namespace {
 
-constexpr std::size_t row_texels = 128;  // two for each particle
-constexpr std::size_t rows = 64;
-constexpr std::size_t most_drawn = row_texels * rows / 2;
 // Of the bits of a program's index.
 constexpr std::size_t with_depth = 1;
 constexpr std::size_t with_energy = 2;
@@ -93,37 +90,29 @@ Work JetEffect::prepare(Prepare& prepare) {
 
 void JetEffect::draw(const Pass& pass) {
     const auto particles = state_->jets.particles();
-    const std::size_t count = std::min(particles.size(), most_drawn);
-    if (count == 0) {
+    if (particles.empty()) {
         return;
     }
-    if (!texels_) {
-        texels_ = gl::Texture::make_2d(pass.gl(), static_cast<int>(row_texels), static_cast<int>(rows),
-                                       PixelFormat::rgba32f, "jets of blood");
-        rows_.resize(row_texels * rows);
-    }
-    for (std::size_t i = 0; i < count; ++i) {
-        const JetParticle& particle = particles[i];
+    items_.clear();
+    for (const JetParticle& particle : particles) {
         const double radius = std::cbrt(particle.volume_mm3 * 3.0 / (4.0 * std::numbers::pi));
-        rows_[2 * i] = glm::vec4(glm::vec3(particle.position_mm), static_cast<float>(radius));
-        rows_[2 * i + 1] = glm::vec4(glm::vec3(particle.velocity_mm_s), static_cast<float>(particle.source));
+        items_.emplace_back(glm::vec3(particle.position_mm), static_cast<float>(radius));
+        items_.emplace_back(glm::vec3(particle.velocity_mm_s), 0.0F);
+        items_.emplace_back(particle.sealed_at, 0.0F, 0.0F);
     }
-    const std::size_t used = (2 * count + row_texels - 1) / row_texels;
-    texels_->upload_region({0, 0, 0}, {static_cast<int>(row_texels), static_cast<int>(used), 1},
-                           std::as_bytes(std::span(rows_).first(used * row_texels)));
+    list_.upload(pass.gl(), items_, "jets of blood");
     const bool depth = pass.has("depth") && pass.texture("depth")->width() == pass.size().x &&
                        pass.texture("depth")->height() == pass.size().y;
     const bool energy = pass.has("energy");
     const gl::Program& program = pass.use((depth ? with_depth : 0) | (energy ? with_energy : 0));
     const View& view = pass.frame().eye();
-    pass.bind(program, "u_particles", *texels_, gl::Filter::nearest);
+    pass.bind(program, "u_particles", list_.texture(), gl::Filter::nearest);
     if (depth) {
         pass.bind(program, "u_depth", "depth");
     }
     if (energy) {
         pass.bind(program, "u_energy", "energy");
         program.set("u_sealed", static_cast<float>(params_.sealed_energy));
-        program.set("u_source", std::span<const glm::vec2>(state_->wound_uvs));
     }
     program.set("u_to_eye", glm::mat4(view.view));
     program.set("u_projection", glm::mat4(view.projection));
@@ -133,7 +122,7 @@ void JetEffect::draw(const Pass& pass) {
     program.set("u_pixel", static_cast<float>(2.0 / (std::abs(view.projection[1][1]) * pass.size().y)));
     program.set("u_colour", glm::vec3(params_.colour));
     pass.raster(over_picture);
-    pass.draw_generated(GL_TRIANGLE_STRIP, 4, static_cast<int>(count));
+    pass.draw_generated(GL_TRIANGLE_STRIP, 4, static_cast<int>(particles.size()));
 }
 
 }  // namespace viscera::tissue

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "effects/tissue/blood_state.h"
+#include "effects/tissue/list_texture.h"
 #include "engine/gl/texture.h"
 #include "engine/runtime/effect.h"
 
@@ -35,8 +36,8 @@ class JetEffect final : public Effect {
     JetParams params_;
     std::vector<ProgramDesc> programs_;
     std::shared_ptr<BloodState> state_;
-    std::optional<gl::Texture> texels_;
-    std::vector<glm::vec4> rows_;
+    ListTexture list_;
+    std::vector<glm::vec4> items_;
 };
 
 }  // namespace viscera::tissue

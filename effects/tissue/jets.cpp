@@ -34,7 +34,7 @@ double Jets::noise() {
     return static_cast<double>(x >> 11) * 0x1p-52 - 1.0;
 }
 
-void Jets::leave(const WoundParams& wound, std::uint32_t source, const DropMeter::Drops& drops, double pulse,
+void Jets::leave(const WoundParams& wound, const glm::vec2& uv, const DropMeter::Drops& drops, double pulse,
                  const glm::dvec3& gravity_mm_s2, double dt_s) {
     const double length = glm::length(wound.direction);
     const glm::dvec3 direction = length > 0.0 ? wound.direction / length : glm::dvec3(0.0);
@@ -51,7 +51,7 @@ void Jets::leave(const WoundParams& wound, std::uint32_t source, const DropMeter
         particles_.push_back({.position_mm = wound.position_mm + start_mm * direction + flown,
                               .velocity_mm_s = velocity + since * gravity_mm_s2,
                               .volume_mm3 = drops.volume_mm3,
-                              .source = source});
+                              .sealed_at = uv});
     }
 }
 
@@ -64,8 +64,7 @@ void Jets::step(const TriangleTree& surface, const glm::dvec3& gravity_mm_s2, do
             hits.push_back({.uv = glm::vec2(hit->uv - glm::floor(hit->uv)),
                             .volume_mm3 = static_cast<float>(particle.volume_mm3),
                             .radius_mm = static_cast<float>(splash_mm),
-                            .source = static_cast<float>(particle.source),
-                            .sealed_at_source = 1.0F});
+                            .sealed_at = particle.sealed_at});
             return false;
         }
         particle.position_mm = to;

@@ -18,7 +18,7 @@ struct JetParticle {
     glm::dvec3 velocity_mm_s{0.0};
     double volume_mm3 = 0.0;
     double age_s = 0.0;
-    std::uint32_t source = 0;  ///< index of the wound
+    glm::vec2 sealed_at{-1.0F};  ///< UV of the wound
 };
 
 /// Jets of blood: particles that fly freely until they meet a surface. The same steps give the same
@@ -26,8 +26,8 @@ struct JetParticle {
 class Jets {
   public:
     void clear();
-    /// Blood that leaves a wound during one step, under a gravity [mm/s^2].
-    void leave(const WoundParams& wound, std::uint32_t source, const DropMeter::Drops& drops, double pulse,
+    /// Blood that leaves a wound at `uv` during one step, under a gravity [mm/s^2].
+    void leave(const WoundParams& wound, const glm::vec2& uv, const DropMeter::Drops& drops, double pulse,
                const glm::dvec3& gravity_mm_s2, double dt_s);
     /// Moves all by one step. What meets the surface is taken away and comes out as new drops; what flies for
     /// too long is lost. `gravity_mm_s2`: acceleration.

@@ -158,6 +158,41 @@ void TriangleTree::build(std::size_t first, std::size_t count) {
     build(first + count / 2, count - count / 2);
 }
 
+std::optional<SurfacePoint> TriangleTree::nearest(const glm::dvec3& place_mm) const {
+    std::optional<SurfacePoint> best;
+    const auto away = [&](std::uint32_t at) {
+        return glm::length(place_mm - glm::clamp(place_mm, nodes_[at].low, nodes_[at].high));
+    };
+    std::array<std::uint32_t, deepest> stack{};
+    std::size_t held = nodes_.empty() ? 0 : 1;
+    while (held > 0) {
+        const std::uint32_t at = stack[--held];
+        const Node& node = nodes_[at];
+        if (best && away(at) > best->distance) {
+            continue;
+        }
+        if (node.count == 0) {
+            const std::uint32_t next = at + 1;
+            const bool first_is_near = away(next) < away(node.first);
+            stack[held++] = first_is_near ? node.first : next;
+            stack[held++] = first_is_near ? next : node.first;
+            continue;
+        }
+        for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+            const Triangle& t = triangles_[i];
+            const glm::dvec2 w = nearest_weights(place_mm, t.p, t.p + t.e1, t.p + t.e2);
+            const glm::dvec3 point = t.p + w.x * t.e1 + w.y * t.e2;
+            const double distance = glm::length(point - place_mm);
+            // Of equals the first of the file.
+            if (!best || distance < best->distance ||
+                (distance == best->distance && t.index < best->triangle)) {
+                best = {t.index, point, t.uv + w.x * t.d1 + w.y * t.d2, distance};
+            }
+        }
+    }
+    return best;
+}
+
 std::optional<SurfacePoint> TriangleTree::first_hit(const glm::dvec3& from, const glm::dvec3& to) const {
     if (nodes_.empty()) {
         return std::nullopt;

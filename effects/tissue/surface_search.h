@@ -31,6 +31,8 @@ class TriangleTree {
 
     /// The first point of the way from `from` to `to` [mm] on a triangle, of either side.
     [[nodiscard]] std::optional<SurfacePoint> first_hit(const glm::dvec3& from, const glm::dvec3& to) const;
+    /// As nearest_point().
+    [[nodiscard]] std::optional<SurfacePoint> nearest(const glm::dvec3& place_mm) const;
     [[nodiscard]] const Bounds& bounds() const { return bounds_; }
 
   private:

@@ -2,7 +2,7 @@
 // Where blood is: each texel adds up its block of the film and its part of the drops.
 uniform sampler2D u_film;    // height, owed, gone [mm], area [mm^2]
 uniform sampler2D u_drops;   // u, v, volume [mm^3], age
-uniform sampler2D u_ledger;  // volume by source [mm^3]
+uniform sampler2D u_ledger;  // volume given, in parts [mm^3]
 uniform float u_flying;      // volume of jets in the air [mm^3]
 uniform float u_lost;        // volume of jets that met nothing [mm^3]
 layout(location = 0) out vec4 o_account;  // given, on the surface as film, as drops, gone [mm^3]

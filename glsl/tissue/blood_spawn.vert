@@ -2,21 +2,19 @@
 #include "tissue/blood_place.glsl"
 #include "tissue/blood_drop.glsl"
 // New drops, each a point at its place in the ring.
-uniform sampler2D u_spawn;  // two texels for each: u, v, volume [mm^3], radius of the source [mm]; place in the ring, seed, source, see u_source
+#include "tissue/list.glsl"
+uniform sampler2D u_spawn;  // two items for each: u, v, volume [mm^3], radius of the source [mm]; place in the ring, seed, UV that decides
 uniform sampler2D u_metric;
 #ifdef ENERGY
 uniform sampler2D u_energy;
-uniform float u_sealed;      // energy at which tissue no longer bleeds
-uniform vec2 u_source[64];   // UV of the wounds: what flew decides there, not where it came down
+uniform float u_sealed;  // energy at which tissue no longer bleeds
 #endif
-uniform ivec2 u_ring;  // size of the ring's texture, or of the ledger: volume by source
+uniform ivec2 u_ring;  // size of the ring's texture, or of the ledger
 flat out vec4 v_drop;
 
 void main() {
-    int width = textureSize(u_spawn, 0).x;
-    int i = 2 * gl_VertexID;
-    vec4 source = texelFetch(u_spawn, ivec2(i % width, i / width), 0);
-    vec4 more = texelFetch(u_spawn, ivec2(i % width + 1, i / width), 0);
+    vec4 source = list_item(u_spawn, 2 * gl_VertexID);
+    vec4 more = list_item(u_spawn, 2 * gl_VertexID + 1);
     vec2 size = vec2(textureSize(u_film, 0));
     vec2 centre = source.xy * size;
     uint seed = uint(more.y);
@@ -30,15 +28,13 @@ void main() {
     }
     float volume = at.z > 0.0 ? source.z : 0.0;
 #ifdef ENERGY
-    vec2 decides = more.w > 0.5 ? u_source[int(more.z)] : at.xy / size;
+    // What flew was given where it left, not where it came down.
+    vec2 decides = more.z >= 0.0 ? more.zw : at.xy / size;
     float energy = texelFetch(u_energy, ivec2(clamp(decides, 0.0, 0.9999) * vec2(textureSize(u_energy, 0))), 0).r;
     volume *= 1.0 - smoothstep(0.5 * u_sealed, u_sealed, energy);
 #endif
     v_drop = vec4(at.xy / size, volume, 0.0);
-#ifdef LEDGER
-    ivec2 slot = ivec2(clamp(int(more.z), 0, u_ring.x - 1), 0);
-#else
-    ivec2 slot = ivec2(int(more.x) % u_ring.x, int(more.x) / u_ring.x);
-#endif
+    int place = int(more.x) % (u_ring.x * u_ring.y);
+    ivec2 slot = ivec2(place % u_ring.x, place / u_ring.x);
     gl_Position = vec4(2.0 * (vec2(slot) + 0.5) / vec2(u_ring) - 1.0, 0.0, 1.0);
 }

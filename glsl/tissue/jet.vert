@@ -1,6 +1,7 @@
 #version 330 core
 // A drop in the air as a streak along its way while the picture is taken.
-uniform sampler2D u_particles;  // two texels for each: place [mm], radius [mm]; velocity [mm/s], source
+#include "tissue/list.glsl"
+uniform sampler2D u_particles;  // three items for each: place [mm], radius [mm]; velocity [mm/s]; UV of its wound
 uniform mat4 u_to_eye;
 uniform mat4 u_projection;
 uniform float u_exposure;       // [s]
@@ -9,7 +10,6 @@ uniform float u_pixel;          // width of a pixel [mm]: per mm of depth, or, o
 #ifdef ENERGY
 uniform sampler2D u_energy;
 uniform float u_sealed;
-uniform vec2 u_source[64];      // UV of the wounds
 #endif
 out vec2 v_across;              // from the streak's middle, across and along [its radius]
 flat out float v_stretch;       // half length over radius
@@ -17,10 +17,8 @@ flat out float v_pixel;         // width of a pixel over radius
 flat out float v_cover;         // share of the drawn streak that is blood
 
 void main() {
-    int width = textureSize(u_particles, 0).x;
-    int i = 2 * gl_InstanceID;
-    vec4 place = texelFetch(u_particles, ivec2(i % width, i / width), 0);
-    vec4 motion = texelFetch(u_particles, ivec2(i % width + 1, i / width), 0);
+    vec4 place = list_item(u_particles, 3 * gl_InstanceID);
+    vec4 motion = list_item(u_particles, 3 * gl_InstanceID + 1);
     vec3 centre = (u_to_eye * vec4(place.xyz, 1.0)).xyz;
     vec3 half_way = 0.5 * u_exposure * (u_to_eye * vec4(motion.xyz, 0.0)).xyz;
     vec3 sight = u_parallel ? vec3(0.0, 0.0, -1.0) : centre / max(length(centre), 1e-6);
@@ -32,7 +30,7 @@ void main() {
     float radius = place.w * inversesqrt(1.0 + reach / max(place.w, 1e-6));
 #ifdef ENERGY
     vec2 size = vec2(textureSize(u_energy, 0));
-    float energy = texelFetch(u_energy, ivec2(clamp(u_source[int(motion.w)], 0.0, 0.9999) * size), 0).r;
+    float energy = texelFetch(u_energy, ivec2(clamp(list_item(u_particles, 3 * gl_InstanceID + 2).xy, 0.0, 0.9999) * size), 0).r;
     radius *= sqrt(1.0 - smoothstep(0.5 * u_sealed, u_sealed, energy));
 #endif
     float pixel = u_pixel * (u_parallel ? 1.0 : max(-centre.z, 0.0));

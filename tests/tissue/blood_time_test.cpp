@@ -278,6 +278,40 @@ TEST(BloodStress, NothingMakesItLoseItsHead) {
     }
 }
 
+TEST(BloodStress, TenThousandWoundsBleed) {
+    // Into a ring that holds them all, and into one that does not.
+    for (const int max_drops : {16384, 256}) {
+        BloodStage stage(64);
+        set_slope(stage);
+        stage.blood = {{"liquid", {{"max_drops", max_drops}, {"drop_mm3", 0.01}}}};
+        stage.load();
+        std::vector<float> emitters;
+        for (int i = 0; i < 10000; ++i) {
+            const glm::dvec3 p = slope({2.0 + 0.56 * (i % 100), 2.0 + 0.56 * (i / 100)});
+            for (const double v :
+                 {p.x, p.y, p.z, 0.2, 0.6, i % 50 == 0 ? 1.0 : 0.0, 0.0, 0.0, 1.0, 300.0, 0.0, 0.0}) {
+                emitters.push_back(static_cast<float>(v));
+            }
+        }
+        HostValues values;
+        values.set("tissue.blood_emitters", emitters);
+        for (int i = 0; i <= 8; ++i) {
+            stage.frame(0.025 * i, &values);
+        }
+        for (const char* target : {"tissue.blood_height", "tissue.blood_color", "tissue.blood_normal"}) {
+            SCOPED_TRACE(target);
+            expect_finite(stage.read(target));
+        }
+        const BloodAccount account = stage.account();
+        // In whole drops of 1/100 mm^3.
+        std::printf("  %5d drops: given %.1f = film %.1f + drops %.1f + gone %.1f mm^3\n", max_drops,
+                    account.given, account.film, account.drops, account.gone);
+        EXPECT_NEAR(account.given, 10000 * 0.6 * 0.2, 10000 * 0.01);
+        EXPECT_NEAR(account.kept() / account.given, 1.0, 1e-5);
+        EXPECT_TRUE(stage.stage().complaints().empty()) << stage.stage().complaints().front();
+    }
+}
+
 TEST(BloodStress, AMovedSurfaceKeepsItsBlood) {
     BloodStage stage(64);
     set_slope(stage);
