@@ -55,6 +55,42 @@ TEST_F(Shaders, EveryVariantOfEveryEffectIsValid) {
     }
 }
 
+TEST_F(Shaders, BoxesHaveNothingOfCurvilinearVolumesInTheirs) {
+    // The coordinate system is an include: whatever stands in those of rings, a box's shader is the same.
+    const std::set<std::string, std::less<>> curved{"volume/curvilinear.glsl",
+                                                    "volume/curvilinear_limits.glsl",
+                                                    "volume/coordinates_cylindrical.glsl",
+                                                    "volume/coordinates_spherical.glsl",
+                                                    "volume/place_cylindrical.glsl",
+                                                    "volume/place_spherical.glsl",
+                                                    "volume/skip_curvilinear.glsl"};
+    for (const std::string& file : curved) {
+        EXPECT_TRUE(std::filesystem::exists(glsl / file)) << file;
+    }
+    const ShaderReader spoilt = [&, original = embedded_shader_reader()](std::string_view name) {
+        return curved.contains(name) ? std::optional<std::string>("this is no shader;\n") : original(name);
+    };
+    std::vector<ProgramDesc> boxes;
+    std::vector<ProgramDesc> rings;
+    for (const ProgramDesc& program : programs_of("volume/ray_cast.frag")) {
+        const bool ring = std::ranges::any_of(
+            program.defines, [](const std::string& define) { return define.starts_with("COORDINATES"); });
+        (ring ? rings : boxes).push_back(program);
+    }
+    // Some of each sort: all would take as long as the test of every variant.
+    const auto thinned = [](const std::vector<ProgramDesc>& programs, std::size_t count) {
+        std::vector<ProgramDesc> some;
+        for (std::size_t i = 0; i < count; ++i) {
+            some.push_back(programs.at(i * programs.size() / count));
+        }
+        return some;
+    };
+    const Verdict straight = validate(*validator_, thinned(boxes, 25), spoilt);
+    EXPECT_EQ(straight.faults, std::vector<std::string>{});
+    EXPECT_GT(straight.stages, 10U);
+    EXPECT_FALSE(validate(*validator_, thinned(rings, 3), spoilt).faults.empty());
+}
+
 TEST_F(Shaders, ABrokenShaderIsNamedWithItsLine) {
     const Verdict verdict = validate(*validator_, programs_of("filter/gaussian.frag"),
                                      with_change("filter/gaussian.frag", "float sum = ", "flaot sum = "));
