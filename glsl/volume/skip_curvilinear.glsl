@@ -3,6 +3,8 @@
 // Everything is solved from the place in question, so that no distance to it costs digits.
 uniform usampler3D u_bricks;     // kind * 32 + distance to the nearest brick of another kind
 uniform vec3 u_bricks_per_unit;  // bricks per texture coordinate
+uniform vec3 u_occupied_low;     // box around all bricks that are not empty [bricks]
+uniform vec3 u_occupied_high;
 
 const uint run_empty = 0U;
 const uint run_full = 1U;    // every slab is sampled
@@ -120,7 +122,28 @@ Run run_from(Leaper leaper, float at) {
     return Run(inside ? max(leave, 0.0) : 0.0, entry >> 5);
 }
 
-// Nothing is known of where anything is to be seen: empty runs are leapt over as they come.
+// Where the march enters and leaves what lies within the outermost radius, and between the heights, at which anything is to
+// be seen. Wider by a margin that is far more than what a grazing ray's root may be off.
 vec2 occupied_span(Leaper leaper) {
-    return vec2(0.0, 3e38);
+    vec3 high = (u_occupied_high + face_margin) / u_bricks_per_unit;
+    high = (min(high, vec3(1.0)) - u_sample_offset) / u_sample_scale;
+    vec3 p = leaper.first;
+    vec3 e = leaper.extent;
+#if COORDINATES == 1
+    float outer = high.x;
+    float low_height = ((u_occupied_low.z - face_margin) / u_bricks_per_unit.z - u_sample_offset.z) / u_sample_scale.z;
+    vec2 heights = vec2(leave_plane(p.z, -e.z, low_height, high.z), leave_plane(p.z, e.z, low_height, high.z));
+    vec2 span = abs(e.z) > 1e-30 ? vec2(-heights.x, heights.y) : vec2(0.0, never);
+    p.z = 0.0;
+    e.z = 0.0;
+#else
+    float outer = high.z;
+    vec2 span = vec2(0.0, never);
+#endif
+    float b = dot(p, e);
+    float ee = max(dot(e, e), 1e-30);
+    float closest = length(p - b / ee * e);
+    float root = sqrt(max((outer - closest) * (outer + closest) / ee, 0.0));
+    vec2 inside = vec2(-b / ee - root, -b / ee + root);
+    return closest < outer ? vec2(max(span.x, inside.x), min(span.y, inside.y)) : vec2(0.0);
 }
