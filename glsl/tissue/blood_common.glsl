@@ -6,12 +6,16 @@ uniform vec4 u_flow;  // mobility [1/(mm s)], residual film [mm], time step [s],
 
 const float share_of_a_face = 0.25;
 
-/// Volume that goes from a to b in one step [mm^3]; negative the other way. Limits hold in films that are too thick for the step: no cell
-/// gives more than it holds, and levelling never overshoots. area: of the smaller cell, times four times the face's share of what leaves.
+/// Volume that goes from a to b in one step [mm^3]; negative the other way. It grows with the height by its cube, up to the height from
+/// which on more than the face's share of what comes would leave in the same step, and linearly from there: beyond, cells would overshoot
+/// each other in stripes. So waves pass no more than a cell in a step, no cell gives more than it holds, and levelling never overshoots.
+/// area: of the smaller cell, times four times the face's share of what leaves.
 float exchange(float drive, float spread, float area, float a, float b) {
     float moving = max((drive > 0.0 ? a : b) - u_flow.y, 0.0);
-    float limit = area / (8.0 * u_flow.z * max(spread, 1e-6));
-    float mobility = min(u_flow.x * (1.0 / 3.0) * moving * moving * moving, limit);
-    float most = share_of_a_face * moving * area;
-    return clamp(u_flow.z * mobility * drive, -most, most);
+    float pull = u_flow.z * u_flow.x * (1.0 / 3.0) * abs(drive);
+    float most = share_of_a_face * area;
+    float steepness = 3.0 * pull * moving * moving;
+    float volume = steepness > most ? most * (moving - (2.0 / 3.0) * sqrt(most / (3.0 * pull))) : pull * moving * moving * moving;
+    volume = min(volume, abs(drive) * area / (8.0 * max(spread, 1e-6)));
+    return drive > 0.0 ? volume : -volume;
 }

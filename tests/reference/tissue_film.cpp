@@ -160,12 +160,14 @@ struct Builder {
 /// Volume that goes from a to b in a step [mm^3], negative the other way.
 double exchange(double drive, double spread, double area, double a, double b, const FilmParams& p,
                 double dt) {
-    const double total = drive;
-    const double moving = std::max((total > 0.0 ? a : b) - p.residual_mm, 0.0);
-    const double limit = area / (8.0 * dt * std::max(spread, 1e-6));
-    const double mobility = std::min(p.mobility_per_mm_s * moving * moving * moving / 3.0, limit);
-    const double most = 0.25 * moving * area;
-    return std::clamp(dt * mobility * total, -most, most);
+    const double moving = std::max((drive > 0.0 ? a : b) - p.residual_mm, 0.0);
+    const double pull = dt * p.mobility_per_mm_s * std::abs(drive) / 3.0;
+    const double most = 0.25 * area;
+    // From the height at which the derivative is `most` on, the tangent.
+    const double knee = pull > 0.0 ? std::sqrt(most / (3.0 * pull)) : moving;
+    const double volume =
+        moving > knee ? most * (moving - 2.0 / 3.0 * knee) : pull * moving * moving * moving;
+    return std::copysign(std::min(volume, std::abs(drive) * area / (8.0 * std::max(spread, 1e-6))), drive);
 }
 
 }  // namespace

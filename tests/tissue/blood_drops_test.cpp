@@ -162,6 +162,34 @@ TEST(BloodDrops, GoOnAcrossASeam) {
     }
 }
 
+TEST(BloodDrops, TheTrailOfManyDropsIsSmooth) {
+    // Down a wall, with texels of 0.25 mm: drops are some 3 mm across.
+    BloodStage stage(128);
+    const SurfaceChart chart{
+        .high = {28.0, 28.0}, .origin_px = {8.0, 8.0}, .a_px = {4.0, 0.0}, .b_px = {0.0, 4.0}};
+    stage.surface(std::span(&chart, 1), [](glm::dvec2 at) { return glm::dvec3(at, 0.0); });
+    stage.gravity = {{"gravity_m_s2", {0.0, -9.80665, 0.0}}};
+    stage.blood = {{"liquid", {{"max_drops", 1024}}},
+                   {"wounds", {{{"position_mm", {14, 24, 0}}, {"rate_mm3_s", 110.0}}}}};
+    stage.load();
+    stage.run(0.0, 2.0, 0.1);
+    const Image height = stage.read("tissue.blood_height");
+    double rough = 0.0;
+    double sum = 0.0;
+    // Between the wound and the lower border.
+    for (int y = 24; y < 88; ++y) {
+        for (int x = 24; x < 104; ++x) {
+            const double mean = 0.25 * (static_cast<double>(height.at(x - 1, y, 0)) + height.at(x + 1, y, 0) +
+                                        height.at(x, y - 1, 0) + height.at(x, y + 1, 0));
+            rough += std::abs(height.at(x, y, 0) - mean);
+            sum += height.at(x, y, 0);
+        }
+    }
+    std::printf("  texels differ from those around by %.1f %% of the film\n", 100.0 * rough / sum);
+    EXPECT_GT(sum, 5.0);
+    EXPECT_LT(rough / sum, 0.05);
+}
+
 /// A trough: blood runs into it from the side and stays.
 glm::dvec3 trough(glm::dvec2 at) {
     const glm::dvec2 c = at - 30.0;
