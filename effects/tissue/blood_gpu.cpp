@@ -496,7 +496,6 @@ void BloodGpu::begin_picture(const Pass& pass, const BloodMedium& medium, const 
     pass.bind(program, "u_position", "position");
     pass.bind(program, "u_metric", "metric");
     set_medium(program, medium);
-    program.set("u_aspect", medium.drop.x);
     program.set("u_first", static_cast<int>(alive.first % capacity()));
     draw_into(pass, relief_target_, gl::max_blend_state);
     pass.draw_generated(GL_TRIANGLE_STRIP, 4, static_cast<int>(2 * alive.count));

@@ -2,8 +2,8 @@
 #include "tissue/blood_plan.glsl"
 uniform sampler2D u_film;
 uniform sampler2D u_position;
-uniform float u_aspect;  // height over radius
-flat in vec4 v_cap;
+flat in vec4 v_cap;      // place [mm], radius [mm]
+flat in float v_height;  // in the middle [mm]
 layout(location = 0) out float o_height;  // the greatest one stays
 
 void main() {
@@ -13,5 +13,5 @@ void main() {
     vec4 film = texelFetch(u_film, ivec2(gl_FragCoord.xy), 0);
     // Drops stand on the film. What is not stepped is not drawn again before the next picture.
     bool drawn = inside > 0.0 && film.w != 0.0 && texelFetch(u_plan, ivec2(gl_FragCoord.xy) / block_side, 0).r > 0.5;
-    o_height = drawn ? max(film.x + film.y, 0.0) + u_aspect * v_cap.w * inside : -1.0;
+    o_height = drawn ? max(film.x + film.y, 0.0) + v_height * inside : -1.0;
 }

@@ -1,12 +1,14 @@
 #version 330 core
 #include "tissue/blood_place.glsl"
 #include "tissue/blood_drop.glsl"
-// A drop as it is seen: a quad around it in texture space, and another where a seam cuts it.
+// A drop as it is seen: a quad around it in texture space, and another where a seam cuts it. One that is narrower than three texels is
+// drawn as wide as they are, and so much flatter: texels that sample it here and there would show dots.
 uniform sampler2D u_drops;
 uniform sampler2D u_position;
 uniform sampler2D u_metric;
 uniform int u_first;
-flat out vec4 v_cap;     // place [mm], radius [mm]
+flat out vec4 v_cap;      // place [mm], radius [mm]
+flat out float v_height;  // in the middle [mm]
 
 const float farthest = 24.0;  // [texels]
 
@@ -38,13 +40,17 @@ void main() {
     vec4 drop = texelFetch(u_drops, ivec2(index % ring.x, index / ring.x), 0);
     gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
     v_cap = vec4(0.0);
+    v_height = 0.0;
     if (!(drop.z > 0.0)) {
         return;
     }
     ivec2 size = textureSize(u_film, 0);
     vec2 centre = drop.xy * vec2(size);
     ivec2 at = clamp(ivec2(floor(centre)), ivec2(0), size - 1);
-    float radius = drop_radius(drop.z);
+    float own = drop_radius(drop.z);
+    vec2 lengths = texelFetch(u_metric, at, 0).xy;
+    float radius = max(own, 1.5 * max(lengths.x, lengths.y));
+    v_height = u_drop.x * own * (own * own) / (radius * radius);
     v_cap = vec4(world_at(centre), radius);
     vec2 extent = extent_of(at, radius);
     bool drawn = true;

@@ -101,8 +101,9 @@ void main() {
 #ifdef SEAMS
     // A gutter shows what lies across the seam.
     if (film.w < 0.0) {
-        vec2 across = texelFetch(u_right, here, 0).xy;
-        o_film = vec4(texelFetch(u_film, ivec2(across + 0.5), 0).x, 0.0, 0.0, film.w);
+        vec3 across = texelFetch(u_right, here, 0).xyz;
+        ivec2 cell = ivec2(across.xy + 0.5) + ivec2(int(across.z) % 3 - 1, int(across.z) / 3 - 1);
+        o_film = vec4(texelFetch(u_film, cell, 0).x, 0.0, 0.0, film.w);
     }
     // What comes across joins the height in the next step.
     float came = across_seams(here, c);

@@ -9,7 +9,7 @@ uniform float u_strength;    // in units of standard gravity
 uniform bool u_open;         // a film runs off open borders
 uniform float u_spreading;   // least share of gravity that levels a film
 layout(location = 0) out vec4 o_gravity;  // direction in UV, |tangential| / |gravity|, UV per mm along it
-layout(location = 1) out vec4 o_right;    // face to the right: spread, skew, drive [mm], share of area [mm^2]; in gutters see below
+layout(location = 1) out vec4 o_right;    // face to the right: spread, skew, drive [mm], share of area [mm^2]; in gutters see main()
 layout(location = 2) out vec4 o_top;      // face to the top
 
 // What a texel is: 2 surface, 1 gutter that continues it, 0 nothing.
@@ -144,6 +144,24 @@ vec4 face(ivec2 a, ivec2 axis, float kind_a, vec3 origin) {
                                       : vec4(0.0);
 }
 
+/// Which of the 3 x 3 texels around a place [texels] is the nearest of the surface, counted from the bottom left. Beside a border the texel
+/// at the place itself need not be one.
+float nearest_surface(vec2 place) {
+    ivec2 middle = ivec2(floor(place + 0.5));
+    float nearest = 1e9;
+    int found = 4;
+    for (int i = 0; i < 9; ++i) {
+        ivec2 there = middle + ivec2(i % 3 - 1, i / 3 - 1);
+        vec2 away = vec2(there) - place;
+        float distance = dot(away, away);
+        if (kind(there) == surface && distance < nearest) {
+            nearest = distance;
+            found = i;
+        }
+    }
+    return float(found);
+}
+
 void main() {
     ivec2 at = ivec2(gl_FragCoord.xy);
     last = textureSize(u_position, 0) - 1;
@@ -153,8 +171,9 @@ void main() {
         o_right = face(at, ivec2(1, 0), here, origin);
         o_top = face(at, ivec2(0, 1), here, origin);
     } else if (here == continued) {
-        // A gutter has no faces; it says in which texel the surface goes on.
-        o_right = vec4(texelFetch(u_seam, at, 0).xy * vec2(last + 1) - 0.5, 0.0, -1.0);
+        // A gutter has no faces; it says where the surface goes on, and which texel there is nearest.
+        vec2 place = texelFetch(u_seam, at, 0).xy * vec2(last + 1) - 0.5;
+        o_right = vec4(place, nearest_surface(place), -1.0);
         o_top = vec4(0.0);
     } else {
         origin = position(at + ivec2(1, 0));

@@ -238,9 +238,18 @@ void Film::step(const TissueSurface& s, const Flow& flow, const FilmParams& p, d
     std::vector<double> across(height_mm.size(), 0.0);
     for (std::size_t i = 0; i < height_mm.size(); ++i) {
         if (s.kind[i] == Texel::gutter) {
-            const glm::ivec2 to(glm::floor(s.seam[i] * glm::dvec2(s.width, s.height)));
-            across[i] =
-                height_mm[s.index(std::clamp(to.x, 0, s.width - 1), std::clamp(to.y, 0, s.height - 1))];
+            // The nearest cell, which beside a border need not be that at the place.
+            const glm::dvec2 place = s.seam[i] * glm::dvec2(s.width, s.height) - 0.5;
+            const glm::ivec2 middle(glm::floor(place + 0.5));
+            double nearest = 1e9;
+            for (int n = 0; n < 9; ++n) {
+                const glm::ivec2 to = middle + glm::ivec2(n % 3 - 1, n / 3 - 1);
+                const double distance = glm::length(glm::dvec2(to) - place);
+                if (s.at(to.x, to.y) == Texel::cell && distance < nearest) {
+                    nearest = distance;
+                    across[i] = height_mm[s.index(to.x, to.y)];
+                }
+            }
         }
     }
     for (std::size_t i = 0; i < height_mm.size(); ++i) {
