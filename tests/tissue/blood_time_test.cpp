@@ -169,6 +169,31 @@ TEST(BloodTime, ThePictureDrawnInPartsIsTheWholeOne) {
     }
 }
 
+TEST(BloodTime, TwoPassesShowTheSameBlood) {
+    BloodStage stage(64);
+    set_slope(stage);
+    stage.blood = {{"liquid", {{"max_drops", 1024}, {"drop_life_s", 0.3}}},
+                   {"wounds", json::array({wound(20, 52, 60.0)})}};
+    stage.blood["wounds"][0]["stop_s"] = 0.5;
+    // Both draw in parts, from what each has drawn itself.
+    json scene = stage.scene();
+    json second = *std::ranges::find(scene["passes"], "blood", [](const json& p) { return p["name"]; });
+    second["name"] = "second";
+    for (const auto& [port, target] :
+         {std::pair("height", "second.height"), std::pair("colour", "second.colour")}) {
+        second["targets"][port] = target;
+        scene["outputs"].push_back(target);
+    }
+    scene["targets"]["second.height"] = {{"format", "r32f"}};
+    scene["passes"].push_back(second);
+    stage.stage().load(scene);
+    for (const double until : {0.3, 0.6, 2.0}) {
+        stage.run(stage.time_s(), until, 1.0 / 40.0);
+        EXPECT_EQ(to_floats(stage.read("second.height")), to_floats(stage.read("tissue.blood_height")));
+        EXPECT_EQ(to_floats(stage.read("second.colour")), to_floats(stage.read("tissue.blood_color")));
+    }
+}
+
 TEST(BloodTime, CoagulatedTissueDoesNotBleed) {
     const NoisePictures pictures;
     for (const float energy : {0.0F, 0.375F, 1.0F}) {
