@@ -6,6 +6,7 @@
 
 #include "effects/volume/colours.h"
 #include "effects/volume/crop.h"
+#include "effects/volume/gradients.h"
 #include "effects/volume/prefilter.h"
 #include "engine/core/error.h"
 #include "engine/core/hash.h"
@@ -59,6 +60,12 @@ void RayCastEffect::validate() const {
     params_.look.validate();
     params_.accumulate.validate();
     check_colours();
+    const ReconstructionParams& filter = params_.sampling.reconstruction;
+    if (filter.keeps_gradients() &&
+        (filter.is_tricubic() || filter.filter == ReconstructionFilter::nearest)) {
+        throw Error(ErrorCode::scene, "/sampling/gradient",
+                    "precomputed gradients are those of the linear filters");
+    }
     if (params_.sampling.fovea) {
         params_.sampling.fovea->validate();
     }
@@ -93,6 +100,24 @@ void RayCastEffect::check_colours() const {
     refuse(params_.look.shading.light_volume.used(), "/shading/light_volume", "a light volume needs");
     refuse(params_.look.labels.used(), "/labels", "labels need");
     refuse(params_.look.overlay.used(), "/overlay", "an overlay needs");
+}
+
+/// With an atlas they are made on the fly: nothing else is as large as what needs one.
+bool RayCastEffect::needs_kept_gradients() const {
+    return params_.sampling.reconstruction.keeps_gradients() && params_.volume.storage != Storage::atlas &&
+           (variant_.function == RayFunction::isosurface || variant_.look.shaded ||
+            variant_.look.by_gradient);
+}
+
+void RayCastEffect::bind_gradients(const Pass& pass, const gl::Program& program, const TexelMap& map) const {
+    GpuVolume& gpu =
+        *load_gpu_volume(pass.assets(), pass.gl(), *gradients_, all_channels, Storage::texture_3d);
+    gpu.update(*gradients_);
+    const Volume& volume = gradients_->volume();
+    program.set("u_gradient_scale",
+                glm::vec3(32767.0 * volume.slope / map.scale * glm::dvec3(volume.grid.dims)));
+    pass.bind(program, "u_gradients", gpu.texture(), gl::Filter::linear,
+              space_.shape.wrap ? gl::Wrap::repeat : gl::Wrap::clamp);
 }
 
 void RayCastEffect::set_colours(const gl::Program& program) const {
@@ -275,6 +300,8 @@ Work RayCastEffect::prepare(Prepare& prepare) {
     if (space_.shape.curvilinear() && glm::any(glm::greaterThanEqual(box_min_, box_max_))) {
         return Work::idle("the crop leaves nothing");
     }
+    gradients_ =
+        needs_kept_gradients() ? load_gradients(prepare.assets(), *source_, params_.volume.channel) : nullptr;
     const FrameBox cropped = space_.box_of(box_min_, box_max_);
     const ClippedBox box =
         clipped_box(cropped.min, cropped.max, space_.local_to_world, params_.look.clip_planes);
@@ -414,6 +441,9 @@ void RayCastEffect::draw(const Pass& pass) {
     }
     if (shows_colours()) {
         set_colours(program);
+    }
+    if (gradients_ && !variant_.atlas) {
+        bind_gradients(pass, program, map);
     }
     if (!projects()) {
         look_.bind(params_.look, variant_.look,

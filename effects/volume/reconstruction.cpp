@@ -18,7 +18,7 @@ constexpr std::array<std::string_view, 8> filter_defines{"",
                                                          "FILTER_BSPLINE_FP32",
                                                          "FILTER_CATMULL_ROM",
                                                          "FILTER_CATMULL_ROM_FP32"};
-constexpr std::array<std::string_view, 3> gradient_names{"automatic", "central", "analytic"};
+constexpr std::array<std::string_view, 4> gradient_names{"automatic", "central", "analytic", "precomputed"};
 
 bool is_bspline(ReconstructionFilter filter) {
     return filter == ReconstructionFilter::bspline || filter == ReconstructionFilter::bspline_fp32;
@@ -51,10 +51,12 @@ void ReconstructionParams::visit(ParamVisitor& v) {
     v.field({.name = "prefilter",
              .doc = "B-splines pass through the voxels (fourth order) instead of smoothing them."},
             prefilter);
-    v.field({.name = "gradient",
-             .doc = "Central difference of one voxel to either side, or the filter's own derivative; "
-                    "automatic: central for nearest and linear."},
-            gradient);
+    v.field(
+        {.name = "gradient",
+         .doc = "Central difference of one voxel to either side, or the filter's own derivative; "
+                "automatic: central for nearest and linear; precomputed: central ones kept for all voxels, "
+                "8 bytes each, for linear filters."},
+        gradient);
 }
 
 bool ReconstructionParams::uses_coefficients() const {
@@ -89,8 +91,12 @@ std::vector<std::string> ReconstructionParams::defines() const {
         !define.empty()) {
         result.emplace_back(define);
     }
-    if (gradient == GradientKind::central || (gradient == GradientKind::automatic && !is_cubic(filter))) {
+    if (gradient == GradientKind::central || keeps_gradients() ||
+        (gradient == GradientKind::automatic && !is_cubic(filter))) {
         result.emplace_back("GRADIENT_CENTRAL");
+    }
+    if (keeps_gradients()) {
+        result.emplace_back("GRADIENT_KEPT");
     }
     return result;
 }

@@ -26,7 +26,7 @@ enum class ReconstructionFilter {
 [[nodiscard]] std::span<const std::string_view> choice_names(ReconstructionFilter filter);
 
 /// automatic: central for nearest and linear filters, analytic for cubic ones.
-enum class GradientKind { automatic, central, analytic };
+enum class GradientKind { automatic, central, analytic, precomputed };
 [[nodiscard]] std::span<const std::string_view> choice_names(GradientKind kind);
 
 /// How a volume is reconstructed between its voxels: glsl/volume/sample.glsl.
@@ -41,6 +41,8 @@ struct ReconstructionParams {
     [[nodiscard]] bool uses_coefficients() const;
     /// Whether the field is of a higher degree than three along a ray through a cell.
     [[nodiscard]] bool is_tricubic() const;
+    /// Whether gradients are kept (effects/volume/gradients.h), which those of a trilinear filter can be.
+    [[nodiscard]] bool keeps_gradients() const { return gradient == GradientKind::precomputed; }
     /// How the texture unit filters. `nearest_wanted`: by the transfer function's preset.
     [[nodiscard]] gl::Filter texture_filter(bool nearest_wanted = false) const;
     /// What a brick's range must include: the farthest voxel that counts lies less than this beyond the place

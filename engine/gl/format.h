@@ -23,6 +23,7 @@ struct TextureFormat {
 /// 16-bit normalised: the fastest for 8- and 12-bit volumes.
 inline constexpr TextureFormat r16_format{GL_R16, GL_RED, GL_UNSIGNED_SHORT, 2};
 inline constexpr TextureFormat rgba16_format{GL_RGBA16, GL_RGBA, GL_UNSIGNED_SHORT, 8};
+inline constexpr TextureFormat rgba16_snorm_format{GL_RGBA16_SNORM, GL_RGBA, GL_SHORT, 8};
 /// Labels, unfiltered.
 inline constexpr TextureFormat r8ui_format{GL_R8UI, GL_RED_INTEGER, GL_UNSIGNED_BYTE, 1};
 inline constexpr TextureFormat r16ui_format{GL_R16UI, GL_RED_INTEGER, GL_UNSIGNED_SHORT, 2};

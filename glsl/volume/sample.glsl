@@ -23,10 +23,18 @@
 #include "volume/filter_linear.glsl"
 #endif
 
+#if defined(GRADIENT_KEPT) && !defined(STORAGE_ATLAS)
+uniform sampler3D u_gradients;   // central differences at the voxels: effects/volume/gradients.h
+uniform vec3 u_gradient_scale;   // of a texel -> per texture coordinate
+#endif
+
 // Derivative of the value per texture coordinate: the filter's own, or the central difference of one voxel to either
-// side (GRADIENT_CENTRAL).
+// side (GRADIENT_CENTRAL). That of the trilinear filter is the trilinear mix of the differences at the voxels, so it can be
+// looked up where they are kept (GRADIENT_KEPT).
 vec3 sample_gradient(vec3 place) {
-#ifdef GRADIENT_CENTRAL
+#if defined(GRADIENT_KEPT) && !defined(STORAGE_ATLAS)
+    return u_gradient_scale * textureLod(u_gradients, within_texture(place), 0.0).rgb;
+#elif defined(GRADIENT_CENTRAL)
     vec3 size = vec3(volume_size());
     vec3 x = vec3(1.0 / size.x, 0.0, 0.0);
     vec3 y = vec3(0.0, 1.0 / size.y, 0.0);

@@ -82,16 +82,20 @@ VOXEL texel(ivec3 voxel) {
     return texelFetch(u_volume, voxel, 0).CHANNELS;
 }
 
-// Trilinear by the texture unit; beyond the outermost centres their value goes on.
-VOXEL linear_texel(vec3 place) {
+// The sampler of a ring repeats along all axes.
+vec3 within_texture(vec3 place) {
 #ifdef COORDINATES
-    // The sampler of a ring repeats along all axes.
     vec3 edge = 0.5 / vec3(volume_size());
     float angle = place.ANGLE;
     place = clamp(place, edge, 1.0 - edge);
     place.ANGLE = u_ring ? angle : place.ANGLE;
 #endif
-    return textureLod(u_volume, place, 0.0).CHANNELS;
+    return place;
+}
+
+// Trilinear by the texture unit; beyond the outermost centres their value goes on.
+VOXEL linear_texel(vec3 place) {
+    return textureLod(u_volume, within_texture(place), 0.0).CHANNELS;
 }
 #endif
 

@@ -125,6 +125,7 @@ std::vector<ParameterSet> parameter_sets() {
         cast(R"("sampling": {"filter": "catmull_rom"}, "shading": {"enabled": true})"),
         cast(R"("sampling": {"filter": "catmull_rom_fp32"}, "shading": {"enabled": true})"),
         cast(R"("function": "accumulate", "accumulate": {"channels": [{}, {}, {}]})"),
+        cast(R"("sampling": {"gradient": "precomputed"}, "shading": {"enabled": true})"),
         cast(R"("function": "accumulate", "accumulate": {"channels": [{}, {}]},
                 "sampling": {"filter": "linear_fp32", "scheme": "cell"}, "clip_planes": [{}])"),
         cast(R"("sampling": {"limits": "two_pass"})"),

@@ -37,6 +37,9 @@ void against_ceiling(Lab& lab, ComputeUse compute, const std::string& group) {
         {{"composite", json::object()}, exact_composite()},
         {{"composite, two Gauss points a slab", {{"sampling", {{"scheme", "gauss"}}}}}, nullptr},
         {{"composite, shaded", {{"shading", {{"enabled", true}}}}}, exact_composite()},
+        {{"composite, shaded, gradients kept",
+          {{"shading", {{"enabled", true}}}, {"sampling", {{"gradient", "precomputed"}}}}},
+         nullptr},
         {{"mip", {{"function", "mip"}}}, exact_cells()},
         {{"xray", {{"function", "xray"}, {"xray", {{"water_attenuation_per_mm", 0.012}}}}}, exact_cells()},
         {{"isosurface, skipping", surfaces}, exact_cells()}};

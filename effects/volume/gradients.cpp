@@ -1,0 +1,185 @@
+#include "effects/volume/gradients.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <limits>
+
+#include "engine/core/error.h"
+#include "engine/core/hash.h"
+
+namespace viscera::volume {
+namespace {
+
+constexpr double most = 32767.0;
+
+/// Voxels of one channel, slice by slice, each decoded once.
+class Slices {
+  public:
+    Slices(const Volume& volume, int channel, float empty)
+        : volume_(volume), channel_(channel), empty_(empty) {}
+
+    /// A slice of all of the volume; valid for the last three that were asked for.
+    const std::vector<float>& at(int z) {
+        const auto slot = static_cast<std::size_t>(z % 3);
+        if (numbers_.at(slot) != z) {
+            decode(z, slices_.at(slot));
+            numbers_.at(slot) = z;
+        }
+        return slices_.at(slot);
+    }
+
+  private:
+    void decode(int z, std::vector<float>& slice) const {
+        const glm::ivec3 n = volume_.grid.dims;
+        slice.resize(static_cast<std::size_t>(n.x) * static_cast<std::size_t>(n.y));
+        std::size_t i = 0;
+        for (int y = 0; y < n.y; ++y) {
+            for (int x = 0; x < n.x; ++x, ++i) {
+                const auto stored = static_cast<float>(volume_.stored({x, y, z}, channel_));
+                slice[i] = std::isfinite(stored) ? stored : empty_;
+            }
+        }
+    }
+
+    const Volume& volume_;
+    int channel_;
+    float empty_;
+    std::array<std::vector<float>, 3> slices_;
+    std::array<int, 3> numbers_{-1, -1, -1};
+};
+
+/// Calls visit(gradient) for each voxel of a box, x fastest.
+template <class Visit>
+void each_gradient(const Volume& volume, int channel, float empty, const VoxelBox& box,
+                   const Progress& progress, const Visit& visit) {
+    const glm::ivec3 n = volume.grid.dims;
+    const int ring = volume.grid.shape.wrap_axis();
+    const auto beside = [&](int i, int axis) {
+        return axis == ring ? (i + n[axis]) % n[axis] : std::clamp(i, 0, n[axis] - 1);
+    };
+    Slices slices(volume, channel, empty);
+    for (int z = box.first.z; z < box.first.z + box.size.z; ++z) {
+        const std::vector<float>& below = slices.at(beside(z - 1, 2));
+        const std::vector<float>& here = slices.at(z);
+        const std::vector<float>& above = slices.at(beside(z + 1, 2));
+        for (int y = box.first.y; y < box.first.y + box.size.y; ++y) {
+            const auto row = [&](int line) {
+                return static_cast<std::size_t>(line) * static_cast<std::size_t>(n.x);
+            };
+            const float* along = &here[row(y)];
+            const float* front = &here[row(beside(y - 1, 1))];
+            const float* back = &here[row(beside(y + 1, 1))];
+            for (int x = box.first.x; x < box.first.x + box.size.x; ++x) {
+                const std::size_t at = row(y) + static_cast<std::size_t>(x);
+                visit(0.5F * glm::vec3(along[beside(x + 1, 0)] - along[beside(x - 1, 0)], back[x] - front[x],
+                                       above[at] - below[at]));
+            }
+        }
+        if (progress && !progress((z + 1 - box.first.z) / static_cast<double>(box.size.z))) {
+            throw Error(ErrorCode::usage, volume.source, "cancelled");
+        }
+    }
+}
+
+/// Gradients that follow the volume they are made from.
+struct Gradients {
+    Source source;
+    std::unique_ptr<LiveVolume> live;
+    float greatest = 0.0F;      ///< component
+    std::uint64_t version = 0;  ///< of the voxels
+};
+
+float greatest_in(const Volume& volume, int channel, float empty, const VoxelBox& box,
+                  const Progress& progress) {
+    float greatest = 0.0F;
+    each_gradient(volume, channel, empty, box, progress, [&](const glm::vec3& g) {
+        greatest = std::max({greatest, std::abs(g.x), std::abs(g.y), std::abs(g.z)});
+    });
+    return std::min(greatest, std::numeric_limits<float>::max());
+}
+
+std::vector<std::byte> encoded(const Volume& volume, int channel, float empty, const VoxelBox& box,
+                               float greatest, const Progress& progress) {
+    const auto size = glm::tvec3<std::size_t>(box.size);
+    std::vector<std::byte> result(size.x * size.y * size.z * sizeof(glm::i16vec4));
+    std::byte* to = result.data();
+    const float scale = greatest > 0.0F ? static_cast<float>(most) / greatest : 0.0F;
+    each_gradient(volume, channel, empty, box, progress, [&](const glm::vec3& g) {
+        const glm::vec3 scaled = glm::clamp(g * scale, -static_cast<float>(most), static_cast<float>(most));
+        const glm::i16vec4 texel(glm::i16vec3(glm::round(scaled)), 0);
+        std::memcpy(to, &texel, sizeof(texel));
+        to += sizeof(texel);
+    });
+    return result;
+}
+
+/// A box with a voxel around it, all around a ring.
+VoxelBox grown(const VoxelBox& box, const VolumeGrid& grid) {
+    glm::ivec3 first = glm::max(box.first - 1, glm::ivec3(0));
+    glm::ivec3 end = glm::min(box.first + box.size + 1, grid.dims);
+    if (const int ring = grid.shape.wrap_axis(); ring >= 0) {
+        first[ring] = 0;
+        end[ring] = grid.dims[ring];
+    }
+    return {first, end - first};
+}
+
+void follow(Assets& assets, Gradients& made, const Source& voxels, int channel) {
+    const Volume& volume = voxels.volume();
+    const auto empty = static_cast<float>((voxels.statistics.min - volume.intercept) / volume.slope);
+    bool everything = true;
+    std::vector<VoxelBox> changed;
+    if (voxels.live != nullptr && made.version != 0) {
+        changed = voxels.live->changes_since(made.version, everything);
+    }
+    for (VoxelBox& box : changed) {
+        box = grown(box, volume.grid);
+        everything = everything || greatest_in(volume, channel, empty, box, {}) > made.greatest;
+    }
+    if (everything) {
+        const Progress progress =
+            assets.progress("differentiating " + std::filesystem::path(volume.source).filename().string());
+        const auto half = [&](double from) {
+            return progress ? Progress([=](double done) { return progress(from + 0.5 * done); }) : Progress();
+        };
+        const VoxelBox all{glm::ivec3(0), volume.grid.dims};
+        made.greatest = greatest_in(volume, channel, empty, all, half(0.0));
+        Volume gradients{.grid = volume.grid,
+                         .type = ScalarType::i16,
+                         .channels = 4,
+                         .voxels = encoded(volume, channel, empty, all, made.greatest, half(0.5)),
+                         .slope = made.greatest > 0.0F ? static_cast<double>(made.greatest) / most : 1.0,
+                         .source = volume.source};
+        if (made.live == nullptr) {
+            made.live = std::make_unique<LiveVolume>(std::move(gradients));
+        } else {
+            made.live->replace(std::move(gradients));
+        }
+    } else {
+        for (const VoxelBox& box : changed) {
+            made.live->update(box, encoded(volume, channel, empty, box, made.greatest, {}));
+        }
+    }
+    made.version = voxels.version();
+    made.source.live = made.live.get();
+}
+
+}  // namespace
+
+std::shared_ptr<const Source> load_gradients(Assets& assets, const Source& source, int channel) {
+    const std::uint64_t key = Hash().add("gradients").add(source.key).add(channel).value();
+    const std::shared_ptr<Gradients> made = assets.shared<Gradients>(key, [&] {
+        auto gradients = std::make_shared<Gradients>();
+        gradients->source.key = key;
+        return gradients;
+    });
+    if (made->version != source.version()) {
+        follow(assets, *made, source, channel);
+    }
+    return {made, &made->source};
+}
+
+}  // namespace viscera::volume
