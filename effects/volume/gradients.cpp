@@ -106,7 +106,8 @@ std::vector<std::byte> encoded(const Volume& volume, int channel, float empty, c
     const auto size = glm::tvec3<std::size_t>(box.size);
     std::vector<std::byte> result(size.x * size.y * size.z * sizeof(glm::i16vec4));
     std::byte* to = result.data();
-    const float scale = greatest > 0.0F ? static_cast<float>(most) / greatest : 0.0F;
+    constexpr float least = 1e-30F;  // of which 32767 parts a float still tells apart
+    const float scale = greatest > least ? static_cast<float>(most) / greatest : 0.0F;
     each_gradient(volume, channel, empty, box, progress, [&](const glm::vec3& g) {
         const glm::vec3 scaled = glm::clamp(g * scale, -static_cast<float>(most), static_cast<float>(most));
         const glm::i16vec4 texel(glm::i16vec3(glm::round(scaled)), 0);

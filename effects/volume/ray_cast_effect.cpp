@@ -114,8 +114,10 @@ void RayCastEffect::bind_gradients(const Pass& pass, const gl::Program& program,
         *load_gpu_volume(pass.assets(), pass.gl(), *gradients_, all_channels, Storage::texture_3d);
     gpu.update(*gradients_);
     const Volume& volume = gradients_->volume();
-    program.set("u_gradient_scale",
-                glm::vec3(32767.0 * volume.slope / map.scale * glm::dvec3(volume.grid.dims)));
+    // Infinite times nothing would be no number; of what is so steep only the direction counts.
+    constexpr double steepest = 1e30;
+    const double scale = 32767.0 * volume.slope / map.scale;
+    program.set("u_gradient_scale", glm::vec3(std::min(scale, steepest) * glm::dvec3(volume.grid.dims)));
     pass.bind(program, "u_gradients", gpu.texture(), gl::Filter::linear,
               space_.shape.wrap ? gl::Wrap::repeat : gl::Wrap::clamp);
 }

@@ -70,6 +70,22 @@ TEST_F(VolumeLooks, ColoursAtTheirEnds) {
     }
 }
 
+TEST_F(VolumeLooks, KeptGradientsOfAnyNumbers) {
+    constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    for (const glm::ivec3& dims : {glm::ivec3(1), glm::ivec3(5, 1, 7), glm::ivec3(4)}) {
+        for (const double odd : {0.0, 50.0, 3e38, -3e38, 1e-40, nan_value, infinity}) {
+            const LiveVolume volume(make_volume(dims, glm::dvec3(2.0), [&](const glm::ivec3& i) {
+                return (i.x + i.y + i.z) % 3 == 1 ? odd : odd == 1e-40 ? 0.0 : 50.0;
+            }));
+            json parameters = homogeneous();
+            parameters["shading"] = {{"enabled", true}};
+            parameters["sampling"]["gradient"] = "precomputed";
+            EXPECT_FALSE(is_empty(cast(volume, parameters))) << odd;
+        }
+    }
+}
+
 TEST_F(VolumeLooks, TransferFunctionsOfNothingOneKnotAndSteps) {
     const LiveVolume volume(block());
     const glm::dmat4 to_world = volume.volume().grid.texture_to_world();
