@@ -25,7 +25,8 @@ SamplerHandle make_sampler(const Functions& gl) {
 
 Sampler::Sampler(const Functions& gl, const SamplerDesc& desc) : handle_(make_sampler(gl)) {
     const GLint filter = desc.filter == Filter::nearest ? GL_NEAREST : GL_LINEAR;
-    gl.SamplerParameteri(id(), GL_TEXTURE_MIN_FILTER, filter);
+    gl.SamplerParameteri(id(), GL_TEXTURE_MIN_FILTER,
+                         desc.filter == Filter::trilinear ? GL_LINEAR_MIPMAP_LINEAR : filter);
     gl.SamplerParameteri(id(), GL_TEXTURE_MAG_FILTER, filter);
     for (const GLenum direction : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R}) {
         gl.SamplerParameteri(id(), direction, to_gl(desc.wrap));

@@ -6,7 +6,8 @@
 
 namespace viscera::gl {
 
-enum class Filter { nearest, linear };
+/// trilinear: linear, also between the levels of a texture that has several.
+enum class Filter { nearest, linear, trilinear };
 enum class Wrap { clamp, repeat, border };
 
 struct SamplerDesc {

@@ -92,6 +92,27 @@ Texture Texture::from_image(const Functions& gl, const Image& image, std::string
     return texture;
 }
 
+Texture Texture::from_levels(const Functions& gl, std::span<const Image> levels, std::string_view label) {
+    Texture texture = from_image(gl, levels.front(), label);
+    const TextureFormat& format = texture.format();
+    for (std::size_t i = 1; i < levels.size(); ++i) {
+        const Image& level = levels[i];
+        const bool fits = level.width == std::max(levels[i - 1].width / 2, 1) &&
+                          level.height == std::max(levels[i - 1].height / 2, 1) &&
+                          level.format == levels.front().format;
+        if (!fits) {
+            throw Error(ErrorCode::usage, std::string(label), "its levels do not follow each other");
+        }
+        set_tight_unpacking(gl);
+        texture.bind_for_editing();
+        gl.TexImage2D(GL_TEXTURE_2D, static_cast<GLint>(i), static_cast<GLint>(format.internal), level.width,
+                      level.height, 0, format.external, format.type, level.data.data());
+    }
+    texture.bind_for_editing();
+    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, static_cast<GLint>(levels.size()) - 1);
+    return texture;
+}
+
 Texture Texture::wrap(const Functions& gl, GLuint id, GLenum target, Extent extent, TextureFormat format) {
     return {TextureHandle::wrap(gl, id), target, extent, format};
 }

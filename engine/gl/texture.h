@@ -19,8 +19,9 @@ struct Extent {
     bool operator==(const Extent&) const = default;
 };
 
-/// A 2-D or 3-D texture or an array of 2-D layers, with one level, owned or wrapped. How it is filtered is a
-/// Sampler's business. All functions that edit it use editing_unit and leave it active.
+/// A 2-D or 3-D texture or an array of 2-D layers, owned or wrapped, with one level but for from_levels().
+/// How it is filtered is a Sampler's business. All functions that edit it use editing_unit and leave it
+/// active.
 class Texture {
   public:
     /// Uninitialised storage. Throws Error(limit), which names `label`, when the extent is not positive,
@@ -37,6 +38,10 @@ class Texture {
     [[nodiscard]] static Texture make_2d_array(const Functions& gl, Extent extent, TextureFormat format,
                                                std::string_view label);
     [[nodiscard]] static Texture from_image(const Functions& gl, const Image& image, std::string_view label);
+    /// A 2-D texture with levels for Filter::trilinear: pictures of one format, each half as wide and high as
+    /// the one before, rounded down, and at least 1. Throws Error(usage) for others.
+    [[nodiscard]] static Texture from_levels(const Functions& gl, std::span<const Image> levels,
+                                             std::string_view label);
     /// A texture of the host's, which stays the host's. `target`: GL_TEXTURE_2D, GL_TEXTURE_3D or
     /// GL_TEXTURE_2D_ARRAY.
     [[nodiscard]] static Texture wrap(const Functions& gl, GLuint id, GLenum target, Extent extent,

@@ -10,7 +10,10 @@ Samplers::Samplers(const gl::Functions& gl)
                 gl::Sampler(gl, {.filter = gl::Filter::nearest, .wrap = gl::Wrap::border}),
                 gl::Sampler(gl, {.filter = gl::Filter::linear, .wrap = gl::Wrap::clamp}),
                 gl::Sampler(gl, {.filter = gl::Filter::linear, .wrap = gl::Wrap::repeat}),
-                gl::Sampler(gl, {.filter = gl::Filter::linear, .wrap = gl::Wrap::border})} {}
+                gl::Sampler(gl, {.filter = gl::Filter::linear, .wrap = gl::Wrap::border}),
+                gl::Sampler(gl, {.filter = gl::Filter::trilinear, .wrap = gl::Wrap::clamp}),
+                gl::Sampler(gl, {.filter = gl::Filter::trilinear, .wrap = gl::Wrap::repeat}),
+                gl::Sampler(gl, {.filter = gl::Filter::trilinear, .wrap = gl::Wrap::border})} {}
 
 const gl::Sampler& Samplers::get(gl::Filter filter, gl::Wrap wrap) const {
     return samplers_[static_cast<std::size_t>(filter) * 3 + static_cast<std::size_t>(wrap)];

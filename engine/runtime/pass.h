@@ -23,7 +23,7 @@ class Samplers {
     [[nodiscard]] const gl::Sampler& get(gl::Filter filter, gl::Wrap wrap) const;
 
   private:
-    std::array<gl::Sampler, 6> samplers_;
+    std::array<gl::Sampler, 9> samplers_;
 };
 
 /// What Effect::draw() works with: the targets are bound and cleared, the viewport is set.

@@ -9,6 +9,7 @@
 #include "engine/core/hash.h"
 #include "engine/core/log.h"
 #include "engine/core/mesh_atlas.h"
+#include "engine/core/mesh_normals.h"
 #include "engine/io/mesh.h"
 #include "engine/io/packed.h"
 #include "engine/runtime/assets.h"
@@ -146,6 +147,19 @@ std::string describe(const MeshAtlas& atlas) {
     return text.data();
 }
 
+/// Closes the shading where parts meet.
+void join_parts(std::span<const MeshData> parts, MeshData& mesh, const std::string& where, Log& log) {
+    std::vector<std::size_t> counts;
+    for (const MeshData& part : parts) {
+        counts.push_back(part.positions.size());
+    }
+    const std::size_t joined = join_normals(mesh, counts, io::first_at_same_place(mesh.positions));
+    if (joined > 0) {
+        log.info(where + ": its " + std::to_string(parts.size()) + " meshes meet at " +
+                 std::to_string(joined) + " places, where they get one normal");
+    }
+}
+
 }  // namespace
 
 std::span<const std::string_view> choice_names(AtlasSource) {
@@ -161,6 +175,7 @@ TextureSpace make_texture_space(std::span<const MeshData> parts, AtlasSource sou
         space.picture_uvs = mesh.uvs;
         return space;
     }
+    join_parts(parts, mesh, where, assets.log());
     const std::string fault =
         source == AtlasSource::generated ? "is to be painted by an atlas of its own" : fault_of(mesh);
     const bool keep = fault.empty() || (source == AtlasSource::file && !mesh.uvs.empty());
