@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/core/hash.h"
+#include "engine/core/image_levels.h"
 #include "engine/runtime/pass.h"
 
 namespace viscera::organ {
@@ -91,8 +92,8 @@ std::shared_ptr<gl::Texture> slope_texture(const Pass& pass, const BumpParams& h
                                   .value();
     return pass.assets().shared<gl::Texture>(key, [&] {
         const std::shared_ptr<const Image> image = pass.assets().image(how.map.path);
-        return std::make_shared<gl::Texture>(
-            gl::Texture::from_image(pass.gl(), slopes_of(*image, how, pass.log(), name), name));
+        return std::make_shared<gl::Texture>(gl::Texture::from_levels(
+            pass.gl(), image_levels(slopes_of(*image, how, pass.log(), name)), name));
     });
 }
 
@@ -103,7 +104,7 @@ std::shared_ptr<gl::Texture> colour_texture(const Pass& pass, const AssetPath& f
     return pass.assets().shared<gl::Texture>(key, [&] {
         const std::shared_ptr<const Image> image = pass.assets().image(file.path);
         return std::make_shared<gl::Texture>(
-            gl::Texture::from_image(pass.gl(), colours_of(*image, pass.log(), name), name));
+            gl::Texture::from_levels(pass.gl(), image_levels(colours_of(*image, pass.log(), name)), name));
     });
 }
 

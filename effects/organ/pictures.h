@@ -23,7 +23,7 @@ namespace viscera::organ {
 /// Four channels as stored; grey becomes red, green and blue of the same value. What is not finite is 0.
 [[nodiscard]] Image colours_of(const Image& picture, Log& log, const std::string& name);
 
-/// The same as textures, read from their files on first use and shared by all passes.
+/// The same as textures with levels, read from their files on first use and shared by all passes.
 [[nodiscard]] std::shared_ptr<gl::Texture> slope_texture(const Pass& pass, const BumpParams& how);
 [[nodiscard]] std::shared_ptr<gl::Texture> colour_texture(const Pass& pass, const AssetPath& file);
 

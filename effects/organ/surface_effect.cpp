@@ -47,6 +47,20 @@ void SurfaceEffect::load(Prepare& prepare) {
     to_world_ = placement_matrix(params_.mesh.placement, surface_->centre());
 }
 
+/// What was painted on another mesh lies anywhere on this one.
+void SurfaceEffect::check_subjects(Prepare& prepare) const {
+    const std::uint64_t own = surface_->placed_key(to_world_);
+    for (const char* port : {"energy", "blood_colour", "blood_normal", "blood_height"}) {
+        const std::uint64_t subject = prepare.has(port) ? prepare.subject(port) : 0;
+        if (subject != 0 && subject != own) {
+            prepare.log().fault("organ.other_mesh",
+                                params_.mesh.file.path.string() + ": what port '" + port +
+                                    "' brings was painted on another mesh, atlas or placement, and lies in "
+                                    "the wrong places here");
+        }
+    }
+}
+
 Variant SurfaceEffect::variant_of(const Prepare& prepare) const {
     Variant variant;
     variant.diffuse = !params_.diffuse_map.empty() || prepare.has("diffuse");
@@ -114,6 +128,7 @@ Work SurfaceEffect::prepare(Prepare& prepare) {
     hint_share_ = hint_share(params_.hint, frame.time_s);
     const Variant variant = variant_of(prepare);
     if (is_new || variant != variant_) {
+        check_subjects(prepare);
         variant_ = variant;
         name_features(variant);
     }
@@ -147,7 +162,10 @@ void SurfaceEffect::set_view(const gl::Program& program, const View& view, const
     program.set("u_normal_to_eye", glm::mat3(glm::transpose(glm::inverse(glm::dmat3(to_eye)))));
     program.set("u_pivot", glm::vec3(surface_->centre()));
     program.set("u_pivot_in_eye", glm::vec3(centre_in_eye));
-    program.set("u_towards_eye", view.orthographic ? glm::vec3(0.0F, 0.0F, 1.0F) : glm::vec3(0.0F));
+    const glm::dmat4& p = view.projection;
+    // An orthographic view's rays slant for an eye of two.
+    program.set("u_towards_eye", view.orthographic ? glm::vec3(-p[2][0] / p[0][0], -p[2][1] / p[1][1], 1.0F)
+                                                   : glm::vec3(0.0F));
     set_lights(program, make_lights(params_.lights, view, centre_in_eye));
 }
 
@@ -166,7 +184,7 @@ void SurfaceEffect::set_material(const Pass& pass, const gl::Program& program) {
         if (file.empty()) {
             pass.bind(program, uniform, port, gl::Filter::linear);
         } else {
-            pass.bind(program, uniform, *colour_texture(pass, file), gl::Filter::linear, gl::Wrap::repeat);
+            pass.bind(program, uniform, *colour_texture(pass, file), gl::Filter::trilinear, gl::Wrap::repeat);
         }
     };
     if (variant_.diffuse) {
@@ -174,7 +192,7 @@ void SurfaceEffect::set_material(const Pass& pass, const gl::Program& program) {
         real("u_diffuse_repeat", params_.diffuse_repeat);
     }
     if (has_relief()) {
-        pass.bind(program, "u_slopes", *slope_texture(pass, params_.normal_map), gl::Filter::linear,
+        pass.bind(program, "u_slopes", *slope_texture(pass, params_.normal_map), gl::Filter::trilinear,
                   gl::Wrap::repeat);
         program.set("u_bump", glm::vec2(params_.normal_map.strength, params_.coagulation.bump_gain));
         real("u_bump_repeat", params_.normal_map.repeat);

@@ -39,6 +39,7 @@ class SurfaceEffect final : public Effect {
 
   private:
     void load(Prepare& prepare);
+    void check_subjects(Prepare& prepare) const;
     [[nodiscard]] Variant variant_of(const Prepare& prepare) const;
     [[nodiscard]] bool has_relief() const;
     [[nodiscard]] bool needs_own_mesh() const;

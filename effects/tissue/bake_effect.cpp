@@ -126,7 +126,9 @@ Work BakeEffect::prepare(Prepare& prepare) {
         wanted_ |= (prepare.has(features[i].port) ? 1U : 0U) << i;
     }
     content_key_ = Hash().add(parameters_key_).add(surface_->mesh().shape_key()).value();
-    return Work::all(content_key_);
+    Work work = Work::all(content_key_);
+    work.subject = surface_->key();
+    return work;
 }
 
 /// From what other passes or an earlier run have found, or anew.

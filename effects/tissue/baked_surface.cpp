@@ -6,6 +6,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/hash.h"
+#include "engine/core/log.h"
 #include "engine/runtime/assets.h"
 
 namespace viscera::tissue {
@@ -75,6 +76,16 @@ std::shared_ptr<BakedSurface> BakedSurface::load(Assets& assets, const SurfaceMe
 
 void BakedSurface::move(Prepare& prepare) {
     mesh_->move(prepare.frame().values, host_positions_, prepare.log());
+}
+
+void BakedSurface::check_bake(Prepare& prepare, std::string_view pass) const {
+    const std::uint64_t subject = prepare.subject("position");
+    if (subject != 0 && subject != key()) {
+        prepare.log().fault("tissue.other_mesh",
+                            std::string(pass) + " has '" + name_ +
+                                "' as its mesh, but the bake that it reads is of another mesh, atlas or "
+                                "placement: it will paint in the wrong places");
+    }
 }
 
 const std::shared_ptr<const TexelMap>& BakedSurface::map(Assets& assets) {

@@ -138,6 +138,7 @@ TileTree* CoagulateEffect::find_tiles(Prepare& prepare) {
     }
     if (!surface_ || surface_->size() != size) {
         surface_ = BakedSurface::load(prepare.assets(), *params_.mesh, size);
+        surface_->check_bake(prepare, "tissue.coagulate");
     }
     surface_->move(prepare);
     return &surface_->tiles(prepare.assets());

@@ -23,7 +23,10 @@ std::vector<std::string> EnergyQueries::targets() {
     return {names.begin(), names.end()};
 }
 
-bool EnergyQueries::update(Renderer& renderer) {
+bool EnergyQueries::update(Renderer& renderer, std::optional<std::uint64_t> most_frames_behind) {
+    if (most_frames_behind) {
+        renderer.wait_for_watched(*most_frames_behind);
+    }
     std::array<const WatchedTarget*, 3> copies{};
     for (std::size_t i = 0; i < names.size(); ++i) {
         copies[i] = renderer.watched(names[i]);
@@ -131,7 +134,7 @@ void EnergyQueries::nearest_in_tile(std::size_t tile, const glm::vec3& point, fl
 }
 
 std::optional<double> EnergyQueries::energy_at(const glm::dvec3& point_mm, double within_mm) const {
-    if (energies_.empty()) {
+    if (energies_.empty() || !(within_mm >= 0.0)) {
         return std::nullopt;
     }
     const glm::vec3 point(point_mm);

@@ -27,7 +27,8 @@ class EnergyQueries {
     [[nodiscard]] static std::vector<std::string> targets();
 
     /// Takes the latest copies of a renderer. False: none have arrived yet, and there are no answers.
-    bool update(Renderer& renderer);
+    /// With `most_frames_behind` it waits for copies that are no older (Renderer::wait_for_watched).
+    bool update(Renderer& renderer, std::optional<std::uint64_t> most_frames_behind = std::nullopt);
     /// The same from pictures: energy of one channel, position and metric as the bake describes them, all of
     /// one size. Throws Error(usage) when they are not.
     void take_surface(const Image& position, const Image& metric);

@@ -19,6 +19,7 @@ class SliceEffect final : public Effect {
     void visit(ParamVisitor& visitor) override { params_.visit(visitor); }
     void validate() const override { params_.validate(); }
     [[nodiscard]] std::vector<Port> ports() const override;
+    [[nodiscard]] bool uses_view() const override { return in_camera(); }
     [[nodiscard]] std::span<const ProgramDesc> programs() const override;
     [[nodiscard]] Work prepare(Prepare& prepare) override;
     void draw(const Pass& pass) override;

@@ -38,6 +38,9 @@ struct Port {
     std::string passthrough;  ///< for a write: the read port that stands in for it while the pass is idle
     bool overwrites =
         false;  ///< for a write: draw() sets every pixel of the region, so nothing need be cleared before
+    /// For a write of colour beside a new depth: draw() sets colour only where it sets a depth below 1. Then
+    /// what stays uncovered may get its clear value afterwards, which is less than all.
+    bool behind_depth = false;
 };
 
 /// What there is to do for an effect in one frame.
@@ -52,6 +55,9 @@ struct Work {
     std::uint32_t empty_outputs = 0;  ///< bit i: port i of ports() holds nothing but its clear value
     bool goes_on = false;             ///< see go_on()
     bool rests = false;               ///< see rest()
+    /// Hash of what the outputs belong to, say a mesh in its place, for Prepare::subject(); 0: to what the
+    /// first read that belongs to anything does.
+    std::uint64_t subject = 0;
 
     [[nodiscard]] static Work idle(std::string_view reason) { return {.kind = Kind::idle, .reason = reason}; }
     [[nodiscard]] static Work all(std::uint64_t key) { return {.kind = Kind::all, .key = key}; }
@@ -116,6 +122,9 @@ class Prepare {
     /// Whether a port has content this frame: false for a read that nothing writes or whose writer is idle,
     /// and for a write that nobody needs.
     [[nodiscard]] virtual bool has(std::string_view port) const = 0;
+    /// What a port's content belongs to, as its writer has said this frame (Work::subject); 0: unknown. With
+    /// it a reader tells a target that was made for another thing than its own.
+    [[nodiscard]] virtual std::uint64_t subject(std::string_view port) const = 0;
     /// Size of a port's target [pixels]; {0, 0} for an unbound port.
     [[nodiscard]] virtual glm::ivec2 size(std::string_view port) const = 0;
 };

@@ -6,6 +6,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/hash.h"
+#include "engine/core/image.h"
 #include "engine/gl/debug.h"
 
 namespace viscera {
@@ -33,6 +34,16 @@ glm::ivec2 target_size(const Plan& plan, const PlanPass& pass) {
         }
     }
     return {0, 0};
+}
+
+/// A clear value as its target holds it, rounded here, since drivers round what they clear with and what they
+/// draw in different ways.
+std::array<float, 4> stored(const PlanContent& content) {
+    std::array<float, 4> value = content.clear;
+    if (info(content.format).type == ChannelType::half) {
+        std::ranges::transform(value, value.begin(), [](float v) { return half_to_float(float_to_half(v)); });
+    }
+    return value;
 }
 
 /// Which textures of an old plan hold what the frame after sees as `previous`, and where a new plan has them.
@@ -75,6 +86,11 @@ class Executor::FramePrepare final : public Prepare {
         return {content.width, content.height};
     }
 
+    std::uint64_t subject(std::string_view port) const override {
+        const PlanBinding* binding = find(port);
+        return binding == nullptr || !binding->content ? 0 : executor_.subjects_[*binding->content];
+    }
+
   private:
     const PlanBinding* find(std::string_view port) const {
         const auto& bindings = executor_.plan_.passes[pass_].bindings;
@@ -88,7 +104,11 @@ class Executor::FramePrepare final : public Prepare {
 };
 
 Executor::Executor(const Pass::Shared& shared, const gl::Capabilities& capabilities, Options options)
-    : shared_(shared), capabilities_(capabilities), options_(std::move(options)), pool_(shared.gl) {}
+    : shared_(shared),
+      capabilities_(capabilities),
+      options_(std::move(options)),
+      pool_(shared.gl),
+      fill_program_(shared.shaders.entry({"common/fullscreen.vert", "common/fill.frag", {"FAR"}})) {}
 
 void Executor::set_plan(Plan plan, std::vector<ImportedTarget> imported, std::span<const PassEffect> effects,
                         bool same_scene) {
@@ -217,6 +237,7 @@ void Executor::import(const Frame& frame) {
 void Executor::prepare(FrameReport& report) {
     report.passes.resize(passes_.size());
     schedule_.begin(plan_, pool_.keys(), imported_keys_);
+    subjects_.assign(plan_.contents.size(), 0);
     for (std::size_t p = 0; p < passes_.size(); ++p) {
         PassState& state = passes_[p];
         const PlanPass& pass = plan_.passes[p];
@@ -245,9 +266,24 @@ void Executor::prepare(FrameReport& report) {
             work.empty_bindings |= ((state.work.empty_outputs >> state.port_of_binding[b]) & 1U) << b;
         }
         schedule_.work(plan_, p, work);
+        pass_on_subject(pass, state.work.subject);
         report.passes[p].cpu_ms = milliseconds_since(start);
     }
     schedule_.decide(plan_);
+}
+
+/// A pass's outputs belong to what it says, or to what its inputs belong to.
+void Executor::pass_on_subject(const PlanPass& pass, std::uint64_t subject) {
+    for (const PlanBinding& binding : pass.bindings) {
+        if (subject == 0 && binding.content && !makes_content(binding.access)) {
+            subject = subjects_[*binding.content];
+        }
+    }
+    for (const PlanBinding& binding : pass.bindings) {
+        if (binding.content && makes_content(binding.access)) {
+            subjects_[*binding.content] = subject;
+        }
+    }
 }
 
 const gl::Texture& Executor::texture_of(std::size_t content) const {
@@ -298,11 +334,12 @@ bool Executor::draw(std::size_t p) {
         settle(settlement);
     }
     target.bind();
-    const bool kept = clear(state, pass, target, region.bounds());
+    const Cleared cleared = clear(state, pass, target, region.bounds());
     const Pass view(shared_, frames_[state.frame], state.programs, state.inputs, state.outputs, size, region,
-                    kept);
+                    cleared.kept);
     view.raster(gl::overwrite_state);
     state.effect->draw(view);
+    fill(target, cleared);
     if (state.timer) {
         state.timer->end();
     }
@@ -334,10 +371,56 @@ bool Executor::holds_last(const PassState& state, const PlanPass& pass) {
     return true;
 }
 
-bool Executor::clear(PassState& state, const PlanPass& pass, const gl::Framebuffer& target,
-                     const PixelRect& region) {
+/// Whether nothing of what an output held before is seen in it.
+bool Executor::is_new(const PassState& state, const PlanBinding& binding) const {
+    const PlanContent& content = plan_.contents[*binding.content];
+    return !(content.modifies && !schedule_.contents()[*content.modifies].empty) &&
+           !(content.passthrough && state.work.kind == Work::Kind::update);
+}
+
+/// Whether an output gets its clear value where nothing has been drawn before it, rather than everywhere.
+bool Executor::fills_after(const PassState& state, const PlanPass& pass, std::size_t binding) const {
+    const auto drawn = [&](const PlanBinding& other) {
+        return makes_content(other.access) && other.content &&
+               schedule_.contents()[*other.content].is_drawn(*other.content);
+    };
+    if (!options_.fill_after || !state.ports[state.port_of_binding[binding]].behind_depth) {
+        return false;
+    }
+    std::size_t colours = 0;
+    bool behind = false;
+    for (const PlanBinding& other : pass.bindings) {
+        const bool is_depth = drawn(other) && info(plan_.contents[*other.content].format).is_depth;
+        colours += drawn(other) && !is_depth ? 1 : 0;
+        behind =
+            behind || (is_depth && is_new(state, other) && plan_.contents[*other.content].clear[0] == 1.0F);
+    }
+    return behind && colours == 1 && is_new(state, pass.bindings[binding]);
+}
+
+/// Gives a pass's clear value to what it has left at the greatest depth.
+void Executor::fill(const gl::Framebuffer& target, const Cleared& cleared) const {
+    if (cleared.uncovered.empty()) {
+        return;
+    }
+    const PixelRect& part = cleared.uncovered;
+    target.bind();
+    gl::apply(shared_.gl,
+              {.depth_test = GL_LEQUAL, .scissor = gl::Rect{part.x, part.y, part.width, part.height}},
+              {0, 0, target.width(), target.height()});
+    const gl::Program& program = shared_.shaders.program(fill_program_);
+    program.use();
+    const std::array<float, 4>& v = cleared.value;
+    program.set("u_value", glm::vec4(v[0], v[1], v[2], v[3]));
+    shared_.no_vertices.bind();
+    shared_.gl.DrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+Executor::Cleared Executor::clear(PassState& state, const PlanPass& pass, const gl::Framebuffer& target,
+                                  const PixelRect& region) {
+    Cleared cleared;
     const PixelRect all{0, 0, target.width(), target.height()};
-    const bool kept = state.work.goes_on && holds_last(state, pass);
+    cleared.kept = state.work.goes_on && holds_last(state, pass);
     int colour = 0;
     for (std::size_t b = 0; b < pass.bindings.size(); ++b) {
         const PlanBinding& binding = pass.bindings[b];
@@ -350,24 +433,29 @@ bool Executor::clear(PassState& state, const PlanPass& pass, const gl::Framebuff
             continue;
         }
         const PlanContent& content = plan_.contents[*binding.content];
-        const bool continues = (content.modifies && !schedule_.contents()[*content.modifies].empty) ||
-                               (content.passthrough && state.work.kind == Work::Kind::update);
+        const bool continues = !is_new(state, binding);
         const bool overwritten =
             state.ports[state.port_of_binding[b]].overwrites && state.work.kind == Work::Kind::all;
         TargetPool::Backdrop unknown;
         TargetPool::Backdrop& backdrop = content.texture ? pool_.backdrop(*content.texture) : unknown;
         state.drawn_keys[b] = schedule_.contents()[*binding.content].key;
         backdrop.key = state.drawn_keys[b];
-        if (continues || overwritten || kept) {
+        if (continues || overwritten || cleared.kept) {
             backdrop.known = backdrop.known && !overwritten;
             backdrop.drawn = around(backdrop.drawn, region);
             continue;
         }
         const bool has_backdrop = backdrop.known && backdrop.clear == content.clear;
-        clear_part(target, index, content.clear, has_backdrop ? backdrop.drawn : all);
+        const PixelRect part = has_backdrop ? backdrop.drawn : all;
+        if (fills_after(state, pass, b)) {
+            cleared.uncovered = around(part, region);
+            cleared.value = stored(content);
+        } else {
+            clear_part(target, index, stored(content), part);
+        }
         backdrop = {true, content.clear, region, state.drawn_keys[b]};
     }
-    return kept;
+    return cleared;
 }
 
 /// index: of a colour, or -1 for depth.

@@ -23,6 +23,7 @@ class Executor {
         bool timers = true;
         bool check_errors = true;
         PassObserver observer;
+        bool fill_after = false;  ///< what lies behind depth is cleared after drawing: Port::behind_depth
     };
 
     Executor(const Pass::Shared& shared, const gl::Capabilities& capabilities, Options options);
@@ -80,6 +81,7 @@ class Executor {
     void find_programs(PassState& state) const;
     void see(const Frame& frame);
     void prepare(FrameReport& report);
+    void pass_on_subject(const PlanPass& pass, std::uint64_t subject);
     /// True when it was done by a compute shader.
     bool draw(std::size_t pass);
     void settle(const Settlement& settlement);
@@ -89,10 +91,18 @@ class Executor {
     void check(std::string_view pass) const;
     void observe(std::string_view pass, bool begins) const;
     [[nodiscard]] const gl::Texture& texture_of(std::size_t content) const;
-    /// True when nothing was cleared, since all goes on from what the pass drew last.
-    bool clear(PassState& state, const PlanPass& pass, const gl::Framebuffer& target,
-               const PixelRect& region);
+    /// What has been cleared before a pass draws, and what still has to be afterwards.
+    struct Cleared {
+        bool kept = false;    ///< nothing was cleared, since all goes on from what the pass drew last
+        PixelRect uncovered;  ///< what is cleared afterwards, where nothing was drawn
+        std::array<float, 4> value{};
+    };
+    [[nodiscard]] Cleared clear(PassState& state, const PlanPass& pass, const gl::Framebuffer& target,
+                                const PixelRect& region);
     [[nodiscard]] bool holds_last(const PassState& state, const PlanPass& pass);
+    [[nodiscard]] bool fills_after(const PassState& state, const PlanPass& pass, std::size_t binding) const;
+    [[nodiscard]] bool is_new(const PassState& state, const PlanBinding& binding) const;
+    void fill(const gl::Framebuffer& target, const Cleared& cleared) const;
     void clear_part(const gl::Framebuffer& target, int index, const std::array<float, 4>& value,
                     const PixelRect& part) const;
 
@@ -104,8 +114,10 @@ class Executor {
     std::vector<gl::Texture> imported_textures_;
     std::vector<std::uint64_t> imported_keys_;
     TargetPool pool_;
+    ShaderLibrary::Entry& fill_program_;
     Schedule schedule_;
     std::vector<PassState> passes_;
+    std::vector<std::uint64_t> subjects_;  ///< by content, of this frame
     /// The frame as effects are given it: without an eye, by the left or only one, by the right one.
     std::array<Frame, 3> frames_;
     bool ran_ = false;  ///< a frame has been drawn whose history has not turned over yet

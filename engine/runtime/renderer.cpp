@@ -100,10 +100,13 @@ class Renderer::Impl {
           no_vertices_(*gl_),
           shared_{*gl_,         shaders_, samplers_, black_,
                   no_vertices_, assets_,  log_,      uses_compute(options.compute, capabilities_, log_)},
-          executor_(shared_, capabilities_,
-                    {.timers = options.timers,
-                     .check_errors = options.check_errors,
-                     .observer = std::move(options.observer)}),
+          executor_(
+              shared_, capabilities_,
+              {.timers = options.timers,
+               .check_errors = options.check_errors,
+               .observer = std::move(options.observer),
+               .fill_after = options.background == BackgroundFill::after ||
+                             (options.background == BackgroundFill::automatic && !capabilities_.software)}),
           presenter_(shared_),
           capture_(*gl_),
           watch_(*gl_, watch_path(WatchPath::automatic)) {
@@ -466,6 +469,9 @@ void Renderer::keep(std::vector<std::string> targets) {
 }
 void Renderer::watch(std::vector<std::string> targets, WatchPath path) {
     impl_->with_host_state([&] { impl_->watch(std::move(targets), path); });
+}
+void Renderer::wait_for_watched(std::uint64_t most_frames_behind) {
+    impl_->with_host_state([&] { impl_->watch_.wait(most_frames_behind); });
 }
 const WatchedTarget* Renderer::watched(std::string_view target) {
     impl_->with_host_state([&] { impl_->watch_.poll(); });

@@ -29,6 +29,14 @@ enum class ComputeUse {
     off,
 };
 
+/// When the uncovered part of an opaque picture gets its clear value (Port::behind_depth). The picture is the
+/// same.
+enum class BackgroundFill {
+    automatic,  ///< after drawing on hardware, where clears cost as much as drawing; before it elsewhere
+    before,
+    after,
+};
+
 struct RendererOptions {
     LogCallback log;
     /// Where shaders come from; empty: those embedded in the binary.
@@ -41,6 +49,7 @@ struct RendererOptions {
     /// Called around each pass that draws, its clears included: for measuring.
     PassObserver observer;
     ComputeUse compute = ComputeUse::automatic;
+    BackgroundFill background = BackgroundFill::automatic;
     /// Told of long work (reading volumes, summarising them) on the rendering thread, from within render();
     /// must not call the renderer. When it returns false, render() throws Error(usage) "cancelled", nothing
     /// is half-loaded, and the next render() begins that work anew.
@@ -133,6 +142,9 @@ class Renderer {
     /// The latest copy that has arrived, without waiting; valid until the next call of any member. Null: not
     /// watched, or none has arrived yet.
     [[nodiscard]] const WatchedTarget* watched(std::string_view target);
+    /// For logic to which age matters more than speed: waits until no watched copy lies more than this many
+    /// frames back, at least 1. Holds where it is called after each frame.
+    void wait_for_watched(std::uint64_t most_frames_behind);
     /// Which targets the next frames read back, and who receives them.
     void set_dump(DumpRequest request, CaptureSink sink);
     /// Hands over captures that have arrived, without waiting.

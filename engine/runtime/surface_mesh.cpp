@@ -11,6 +11,9 @@
 namespace viscera {
 namespace {
 
+// Squares of such places are still floats.
+constexpr float farthest_mm = 1e15F;
+
 std::uint64_t content_key(const MeshData& mesh) {
     Hash hash;
     hash.bytes(std::as_bytes(std::span(mesh.positions)));
@@ -106,6 +109,10 @@ std::shared_ptr<SurfaceMesh> SurfaceMesh::load(Assets& assets, const SurfaceMesh
     });
 }
 
+std::uint64_t SurfaceMesh::placed_key(const glm::dmat4& to_world) const {
+    return Hash().add(key_).add(to_world).value();
+}
+
 void SurfaceMesh::move(const HostValues* values, std::string_view name, Log& log) {
     const HostValues::Entry* given = values == nullptr || name.empty() ? nullptr : values->find(name);
     const std::uint64_t version = given == nullptr ? 0 : given->version;
@@ -121,9 +128,9 @@ void SurfaceMesh::move(const HostValues* values, std::string_view name, Log& log
         given = nullptr;
     }
     if (given != nullptr &&
-        !std::ranges::all_of(given->values, [](float value) { return std::isfinite(value); })) {
+        !std::ranges::all_of(given->values, [](float value) { return std::abs(value) < farthest_mm; })) {
         log.fault("surface.host_position_not_finite",
-                  "host values '" + std::string(name) + "' are not all finite; the file's positions stay");
+                  "host values '" + std::string(name) + "' are not all finite and below 1e15 mm; the file's positions stay");
         given = nullptr;
     }
     if (given != nullptr) {

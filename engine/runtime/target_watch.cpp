@@ -206,6 +206,21 @@ void TargetWatch::poll() {
     }
 }
 
+void TargetWatch::wait(std::uint64_t most_frames_behind) {
+    constexpr GLuint64 second = 1'000'000'000;
+    // The last frame may not have been asked for yet, while the one before it is on its way.
+    const std::uint64_t most = std::max<std::uint64_t>(most_frames_behind, 1);
+    poll();
+    for (const std::unique_ptr<Entry>& entry : entries_) {
+        while (!entry->requests.empty() && frames_ - entry->shown_count > most) {
+            if (gl_.ClientWaitSync(entry->requests.front().fence, 0, second) == GL_WAIT_FAILED) {
+                throw Error(ErrorCode::gl, entry->shown.target, "waiting for it failed");
+            }
+            poll();
+        }
+    }
+}
+
 void TargetWatch::arrive(Entry& entry, Request& request) {
     Image& image = entry.shown.image;
     const std::size_t pixel = bytes_per_pixel(image.format);

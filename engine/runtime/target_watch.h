@@ -42,6 +42,8 @@ class TargetWatch {
     void frame_done(Executor& executor, std::uint64_t index, double time_s);
     /// Takes what has arrived. Never waits.
     void poll();
+    /// Waits until no copy is older than this, as far as requests are under way.
+    void wait(std::uint64_t most_frames_behind);
     /// Null: not watched, or no frame of it has arrived yet.
     [[nodiscard]] const WatchedTarget* find(std::string_view target) const;
 

@@ -9,7 +9,7 @@ in vec2 v_picture_uv;   // of the mesh's own pictures
 in float v_scalar;
 uniform vec3 u_colour;
 uniform vec3 u_pivot_in_eye;   // the mesh's centre [mm]
-uniform vec3 u_towards_eye;    // orthographic: (0, 0, 1); perspective: 0
+uniform vec3 u_towards_eye;    // orthographic: against the rays; perspective: 0
 uniform vec3 u_specular_colour;
 #ifdef DIFFUSE_MAP
 uniform sampler2D u_diffuse;
@@ -48,6 +48,9 @@ layout(location = 0, index = 1) out vec4 o_cover;
 #else
 layout(location = 0) out vec4 o_colour;
 #endif
+#if defined(DIFFUSE_MAP) || defined(NORMAL_MAP) || defined(CUT_BY_VERTEX) || defined(HINT)
+#include "organ/level.glsl"
+#endif
 #if defined(NORMAL_MAP) || defined(BLOOD_NORMAL) || defined(BLOOD_HEIGHT)
 #define BUMP
 #include "organ/bump.glsl"
@@ -76,13 +79,16 @@ void main() {
 
     vec4 colour = vec4(u_colour, 1.0);
 #ifdef DIFFUSE_MAP
-    colour *= textureLod(u_diffuse, u_diffuse_repeat * DIFFUSE_MAP, 0.0);
+    vec2 diffuse_uv = u_diffuse_repeat * DIFFUSE_MAP;
+    colour *= textureLod(u_diffuse, diffuse_uv, level_of(u_diffuse, diffuse_uv));
 #endif
 #ifdef CUT
-    vec4 cut = textureLod(u_cut, CUT, 0.0);
 #ifdef CUT_BY_VERTEX
+    vec4 cut = textureLod(u_cut, CUT, level_of(u_cut, CUT));
     bool is_cut = v_scalar > 0.0;
 #else
+    // Smaller copies would widen the cut.
+    vec4 cut = textureLod(u_cut, CUT, 0.0);
     bool is_cut = cut.a > 0.0;
 #endif
     colour.rgb = is_cut ? cut.rgb : colour.rgb;
@@ -92,9 +98,9 @@ void main() {
 #endif
 #ifdef HEMATOMA
 #if HEMATOMA == 1
-    colour.rgb = bruised(colour.rgb, v_place);
+    colour.rgb = bruised(colour.rgb, v_place, gl_FragCoord.xy);
 #else
-    colour.rgb = bruised(colour.rgb, vec3(v_uv, 0.0));
+    colour.rgb = bruised(colour.rgb, vec3(v_uv, 0.0), v_uv);
 #endif
 #endif
 #ifdef ENERGY
@@ -108,7 +114,7 @@ void main() {
     colour.rgb *= mix(vec3(1.0), blood.rgb, whole);
 #endif
 #ifdef HINT
-    vec4 hint = textureLod(u_hint, HINT, 0.0);
+    vec4 hint = textureLod(u_hint, HINT, level_of(u_hint, HINT));
     colour.rgb = mix(colour.rgb, hint.rgb, u_hint_share * hint.a * whole);
 #endif
 
@@ -124,7 +130,8 @@ void main() {
 #ifdef BLOOD
     steepness *= 1.0 - 0.5 * wet;
 #endif
-    vec2 slopes = steepness * textureLod(u_slopes, u_bump_repeat * v_picture_uv, 0.0).rg;
+    vec2 slopes_uv = u_bump_repeat * v_picture_uv;
+    vec2 slopes = steepness * textureLod(u_slopes, slopes_uv, level_of(u_slopes, slopes_uv)).rg;
     normal = bumped(normal, px, py, rise_of(slopes, px, py, dFdx(v_picture_uv), dFdy(v_picture_uv)));
 #endif
 #ifdef BLOOD_NORMAL

@@ -58,7 +58,7 @@ int bench(const BenchArguments& arguments) {
     }
     const auto [width, height] = parse_resolution(arguments.resolution);
     const std::unique_ptr<Context> context = arguments.context.open();
-    Lab lab(*context, {.assets = arguments.assets,
+    Lab lab(*context, {.assets = std::filesystem::absolute(arguments.assets),
                        .width = width,
                        .height = height,
                        .repeats = arguments.repeats,

@@ -21,7 +21,8 @@ namespace viscera::test {
 class Stage {
   public:
     explicit Stage(Backend backend = Backend::osmesa, ShaderReader shaders = {},
-                   ComputeUse compute = ComputeUse::automatic)
+                   ComputeUse compute = ComputeUse::automatic,
+                   BackgroundFill background = BackgroundFill::automatic)
         : context_(create_context(backend, {.debug = true})) {
         register_all(registry_);
         RendererOptions options;
@@ -32,6 +33,7 @@ class Stage {
         };
         options.shaders = std::move(shaders);
         options.compute = compute;
+        options.background = background;
         renderer_ = std::make_unique<Renderer>(context_->proc_address(), registry_, std::move(options));
     }
 

@@ -129,8 +129,15 @@ Image OrganStage::render(double time_s, const HostValues* values) {
         kept.push_back(filled.target);
     }
     stage_.renderer().keep(kept);
-    report_ = stage_.render(time_s, values);
+    Frame frame = stage_.renderer().still(time_s);
+    frame.values = values;
+    slant(frame);
+    report_ = stage_.renderer().render(frame);
     return stage_.renderer().read("organ.color");
+}
+
+void OrganStage::slant(Frame& frame) const {
+    frame.eyes[0].projection[2][0] += organ.slant * frame.eyes[0].projection[0][0];
 }
 
 reference::OrganMap OrganStage::read_target(const std::string& name) {
@@ -144,7 +151,8 @@ reference::Buffer OrganStage::expected() {
     organ.normals.assign(mesh.normals.begin(), mesh.normals.end());
     organ.uvs.assign(mesh.uvs.begin(), mesh.uvs.end());
     organ.indices = mesh.indices;
-    const Frame frame = stage_.renderer().still(0.0);
+    Frame frame = stage_.renderer().still(0.0);
+    slant(frame);
     organ.view = frame.eye().view;
     organ.projection = frame.eye().projection;
     organ.orthographic = frame.eye().orthographic;

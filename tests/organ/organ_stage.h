@@ -60,6 +60,7 @@ class OrganStage {
     [[nodiscard]] const FrameReport& report() const { return report_; }
 
   private:
+    void slant(Frame& frame) const;
     struct Filled {
         std::string target;
         std::string file;

@@ -43,12 +43,29 @@ constexpr std::array<Way, 5> ways{{{"straight", 0, 1, false},
 class Relief : public testing::Test {
   protected:
     Relief() {
-        s.camera = {
-            {"kind", "orthographic"}, {"eye_mm", {0, -200, 0}}, {"target_mm", {0, 0, 0}}, {"height_mm", 50}};
+        look_at(0.0);
         s.parameters["colour"] = {1, 1, 1};
         s.parameters["shading"] = {{"ambient", 0}, {"diffuse", share}, {"specular", 0}};
         s.parameters["lights"] = {
             {{"place", "infinity"}, {"position", {light.x, light.y, light.z}}, {"angular", 0}}};
+    }
+    /// So near that no pixel is as large as a texel of these maps: what is seen is the map itself, not one of
+    /// its smaller copies.
+    void look_at(double x_mm) {
+        centre_mm_ = x_mm;
+        s.camera = {{"kind", "orthographic"},
+                    {"eye_mm", {x_mm, -200, 0}},
+                    {"target_mm", {x_mm, 0, 0}},
+                    {"height_mm", view_mm}};
+    }
+    /// Of what is seen at places all over the patch.
+    double largest_error_anywhere() {
+        double worst = 0.0;
+        for (const double x_mm : {-21.0, -8.5, 4.0, 17.3}) {
+            look_at(x_mm);
+            worst = std::max(worst, largest_error(s.render()));
+        }
+        return worst;
     }
     void use_patch(const Way& way, double bend_mm = 0.0, int cells = 6) {
         s.use_mesh(patch_obj({.cells = cells,
@@ -74,7 +91,8 @@ class Relief : public testing::Test {
         double worst = 0.0;
         for (int y = 0; y < image.height; ++y) {
             for (int x = 0; x < image.width; ++x) {
-                const double x_mm = 50.0 * ((x + 0.5) / image.width - 0.5) * image.width / image.height;
+                const double x_mm =
+                    centre_mm_ + view_mm * ((x + 0.5) / image.width - 0.5) * image.width / image.height;
                 const glm::dvec3 normal = glm::normalize(glm::dvec3(-slope_at(x_mm), -1.0, 0.0));
                 const double wanted = share * std::max(glm::dot(normal, glm::normalize(light)), 0.0);
                 worst = std::max(worst, std::abs(static_cast<double>(image.at(x, y, 0)) - wanted));
@@ -82,6 +100,8 @@ class Relief : public testing::Test {
         }
         return worst;
     }
+    static constexpr double view_mm = 6.0;
+    double centre_mm_ = 0.0;
     OrganStage s{64, 64};
 };
 
@@ -96,11 +116,10 @@ TEST_F(Relief, OfAFloatMapIsTheDisplacedSurfaces) {
                  const glm::dvec3 n = glm::normalize(glm::dvec3(-slopes, 1.0));
                  return c == 3 ? 1.0F : static_cast<float>(n[c]);
              })}};
-        const Image image = s.render();
         // Between texels slopes are mixed: h^2 / 8 of their second derivative at most, in both directions.
         const double step_mm = size_mm / way.scale / way.stretch / texels;
         const double mixing = 2.0 * step_mm * step_mm / 8.0 * amplitude_mm * std::pow(wave_number, 3.0);
-        const double error = largest_error(image);
+        const double error = largest_error_anywhere();
         std::printf("  float map, %-24s %.2e (bound %.2e)\n", way.name, error, mixing + 2e-6);
         EXPECT_LE(error, mixing + 2e-6) << way.name;
         EXPECT_TRUE(s.stage().complaints().empty()) << s.stage().complaints().front();
@@ -125,11 +144,10 @@ TEST_F(Relief, OfAnEightBitMapIsTheDisplacedSurfacesWithinQuantisation) {
         const auto file = s.folder / (std::string(way.name) + ".png");
         io::write_png(file, map, {.alpha = false});
         s.parameters["normal_map"] = {{"map", file.string()}};
-        const Image image = s.render();
         // Half a step in each component of a normal, whose z is at least 1 / sqrt(1 + slope^2).
         const double steepest = amplitude_mm * wave_number;
         const double quantum = 0.5 / 127.0 * std::sqrt(1.0 + steepest * steepest) * (1.0 + steepest);
-        const double error = largest_error(image);
+        const double error = largest_error_anywhere();
         std::printf("  8-bit map, %-24s %.2e (bound %.2e)\n", way.name, error, std::sqrt(2.0) * quantum);
         EXPECT_LE(error, std::sqrt(2.0) * quantum) << way.name;
     }
@@ -191,6 +209,7 @@ TEST_F(Relief, TurningTheTextureTurnsNothingInTheWorld) {
     constexpr double bend_mm = 6.0;
     const double k = std::numbers::pi / size_mm;
     s.parameters["shading"]["specular"] = 0.4;
+    look_at(9.0);
     std::vector<Image> images;
     for (const Way& way : ways) {
         use_patch(way, bend_mm, 60);

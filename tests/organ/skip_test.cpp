@@ -125,6 +125,36 @@ TEST_F(OrganSkip, AClearMembraneIsNotDrawn) {
     EXPECT_EQ(s.stage().renderer().read("organ.color").data, plain.data);
 }
 
+TEST_F(OrganSkip, WhatIsUncoveredMayBeClearedBeforeOrAfter) {
+    s.parameters["focus"] = {{"near_mm", 60}, {"focus_mm", 92}, {"far_mm", 125}, {"clamp_far", 0.7}};
+    json scene = s.scene();
+    scene["targets"]["organ.color"] = {{"format", "rgba16f"}};
+    json second = s.parameters;
+    second["into_picture"] = true;
+    second["mesh"]["placement"] = {{"move_mm", {-30, -12, 0}}};
+    scene["passes"].push_back(pass("second", "organ.surface", second));
+    std::vector<std::vector<Image>> shots;
+    for (const BackgroundFill fill : {BackgroundFill::before, BackgroundFill::after}) {
+        Stage stage(Backend::osmesa, {}, ComputeUse::automatic, fill);
+        std::vector<Image>& images = shots.emplace_back();
+        stage.load(scene);
+        stage.renderer().keep({"organ.color"});
+        // To the left, to the right, out of the picture and back: what was there before must be gone.
+        for (const double shift : {0.0, 0.35, -0.6, 5.0, 0.1}) {
+            Frame frame = stage.renderer().still(0.0);
+            frame.eyes[0].projection[2][0] += shift;
+            stage.renderer().render(frame);
+            images.push_back(stage.renderer().read("organ.color"));
+        }
+        EXPECT_TRUE(stage.complaints().empty());
+    }
+    for (std::size_t i = 0; i < shots[0].size(); ++i) {
+        EXPECT_EQ(shots[0][i].data, shots[1][i].data) << "frame " << i;
+    }
+    EXPECT_NE(shots[0][0].data, shots[0][1].data);
+    s.stage().make_current();
+}
+
 TEST_F(OrganSkip, OrgansOfOnePictureHideEachOther) {
     // A red one and a green one that stands nearer on the left half, in either order of passes.
     json red = s.parameters;

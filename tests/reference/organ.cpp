@@ -70,6 +70,29 @@ glm::dvec3 sample3(const OrganMap& map, const glm::dvec2& uv) {
     return {map.at(uv, 0), map.at(uv, 1), map.at(uv, 2)};
 }
 
+/// Wrapped bilinear lookup, uv in pictures.
+double repeated(const Buffer& picture, const glm::dvec2& uv, int channel) {
+    const double u = uv.x * picture.width - 0.5;
+    const double v = uv.y * picture.height - 0.5;
+    const double i = std::floor(u);
+    const double j = std::floor(v);
+    const auto wrapped = [](double k, int n) { return static_cast<int>(k - n * std::floor(k / n)); };
+    const auto texel = [&](double x, double y) {
+        return picture.at(wrapped(x, picture.width), wrapped(y, picture.height), channel);
+    };
+    const double a = u - i;
+    const double b = v - j;
+    return (1.0 - a) * (1.0 - b) * texel(i, j) + a * (1.0 - b) * texel(i + 1.0, j) +
+           (1.0 - a) * b * texel(i, j + 1.0) + a * b * texel(i + 1.0, j + 1.0);
+}
+
+/// From the far to the near end of one ray, in the eye's axes.
+glm::dvec3 against_parallel_rays(const Organ& organ) {
+    const glm::dmat4 from_clip = glm::inverse(organ.projection);
+    return glm::normalize(glm::dvec3(from_clip * glm::dvec4(0.0, 0.0, -1.0, 1.0)) -
+                          glm::dvec3(from_clip * glm::dvec4(0.0, 0.0, 1.0, 1.0)));
+}
+
 Shaded shade(const Organ& organ, const Plane& plane, int x, int y) {
     const auto in_eye = [&](const glm::dvec3& p) { return glm::dvec3(organ.view * glm::dvec4(p, 1.0)); };
     const glm::dvec3 world = plane.at(organ.positions, x, y);
@@ -78,18 +101,27 @@ Shaded shade(const Organ& organ, const Plane& plane, int x, int y) {
     const double side = plane.front() ? 1.0 : -1.0;
     const glm::dvec3 smooth = unit_or_zero(glm::dmat3(organ.view) * plane.at(organ.normals, x, y));
     glm::dvec3 normal = side * smooth;
-    const glm::dvec3 eye = organ.orthographic ? glm::dvec3(0.0, 0.0, 1.0) : unit_or_zero(-place);
+    const glm::dvec3 eye = organ.orthographic ? against_parallel_rays(organ) : unit_or_zero(-place);
 
     glm::dvec3 colour = organ.colour;
     double alpha = 1.0;
+    const glm::dvec2 ux = plane.along_x(organ.uvs, x, y);
+    const glm::dvec2 uy = plane.along_y(organ.uvs, x, y);
+    const auto seen = [&](const OrganMap& map, int channel) {
+        return map.at(uv, channel, ux, uy, organ.nearer);
+    };
+    const auto seen3 = [&](const OrganMap& map) {
+        return glm::dvec3(seen(map, 0), seen(map, 1), seen(map, 2));
+    };
     if (!organ.diffuse.empty()) {
-        colour *= sample3(organ.diffuse, uv);
-        alpha = organ.diffuse.at(uv, 3);
+        colour *= seen3(organ.diffuse);
+        alpha = seen(organ.diffuse, 3);
     }
     bool cut = false;
     if (!organ.cut_map.empty()) {
         cut = organ.cut.empty() ? organ.cut_map.at(uv, 3) > 0.0 : plane.at(organ.cut, x, y) > 0.0;
-        colour = cut ? sample3(organ.cut_map, uv) : colour;
+        const glm::dvec3 flesh = organ.cut.empty() ? sample3(organ.cut_map, uv) : seen3(organ.cut_map);
+        colour = cut ? flesh : colour;
     }
     double bruise = 0.0;
     for (const glm::dvec4& spot : organ.spots) {
@@ -110,13 +142,11 @@ Shaded shade(const Organ& organ, const Plane& plane, int x, int y) {
         colour *= sample3(organ.blood, uv);
     }
     if (!organ.hint.empty() && !cut) {
-        colour = mixed(colour, sample3(organ.hint, uv), organ.hint_share * organ.hint.at(uv, 3));
+        colour = mixed(colour, seen3(organ.hint), organ.hint_share * seen(organ.hint, 3));
     }
 
     const glm::dvec3 px = glm::dmat3(organ.view) * plane.along_x(organ.positions, x, y);
     const glm::dvec3 py = glm::dmat3(organ.view) * plane.along_y(organ.positions, x, y);
-    const glm::dvec2 ux = plane.along_x(organ.uvs, x, y);
-    const glm::dvec2 uy = plane.along_y(organ.uvs, x, y);
     // Slopes [mm/mm] along dP/du and dP/dv as rises per unit of u and of v.
     const double det = ux.x * uy.y - ux.y * uy.x;
     const glm::dvec2 mm_per_unit(glm::length(px * uy.y - py * ux.y) / std::abs(det),
@@ -128,7 +158,7 @@ Shaded shade(const Organ& organ, const Plane& plane, int x, int y) {
         const double strength = organ.bump * (1.0 + organ.bump_gain * burn.coagulated) * (1.0 - 0.5 * wet);
         normal =
             bumped(normal, px, py,
-                   rise(strength * mm_per_unit * glm::dvec2(organ.slopes.at(uv, 0), organ.slopes.at(uv, 1))));
+                   rise(strength * mm_per_unit * glm::dvec2(seen(organ.slopes, 0), seen(organ.slopes, 1))));
     }
     if (!organ.blood_normal.empty()) {
         const glm::dvec3 n = sample3(organ.blood_normal, uv);
@@ -207,18 +237,42 @@ double OrganMap::at(const glm::dvec2& uv, int channel) const {
     if (!repeats) {
         return sample_linear(picture, repeat * uv, channel);
     }
-    const double u = repeat * uv.x * picture.width - 0.5;
-    const double v = repeat * uv.y * picture.height - 0.5;
-    const double i = std::floor(u);
-    const double j = std::floor(v);
-    const auto wrapped = [](double k, int n) { return static_cast<int>(k - n * std::floor(k / n)); };
-    const auto texel = [&](double x, double y) {
-        return picture.at(wrapped(x, picture.width), wrapped(y, picture.height), channel);
-    };
-    const double a = u - i;
-    const double b = v - j;
-    return (1.0 - a) * (1.0 - b) * texel(i, j) + a * (1.0 - b) * texel(i + 1.0, j) +
-           (1.0 - a) * b * texel(i, j + 1.0) + a * b * texel(i + 1.0, j + 1.0);
+    return repeated(picture, repeat * uv, channel);
+}
+
+void OrganMap::make_smaller() {
+    smaller.clear();
+    const Buffer* from = &picture;
+    while (from->width > 1) {
+        Buffer half(from->width / 2, from->height / 2, from->channels);
+        for (int y = 0; y < half.height; ++y) {
+            for (int x = 0; x < half.width; ++x) {
+                for (int c = 0; c < half.channels; ++c) {
+                    half.at(x, y, c) =
+                        0.25 * (from->at(2 * x, 2 * y, c) + from->at(2 * x + 1, 2 * y, c) +
+                                from->at(2 * x, 2 * y + 1, c) + from->at(2 * x + 1, 2 * y + 1, c));
+                }
+            }
+        }
+        smaller.push_back(std::move(half));
+        from = &smaller.back();
+    }
+}
+
+double OrganMap::at(const glm::dvec2& uv, int channel, const glm::dvec2& ux, const glm::dvec2& uy,
+                    double nearer) const {
+    const glm::dvec2 texels(picture.width, picture.height);
+    const double longer = std::max(glm::length(repeat * texels * ux), glm::length(repeat * texels * uy));
+    const double level = std::log2(std::max(longer, 1e-9));
+    if (smaller.empty() || level <= 0.0) {
+        return at(uv, channel);
+    }
+    const auto whole = static_cast<std::size_t>(std::min(level, static_cast<double>(smaller.size())));
+    const double share = std::clamp(level - static_cast<double>(whole) + nearer, 0.0, 1.0);
+    const Buffer& large = whole == 0 ? picture : smaller[whole - 1];
+    const Buffer& small = whole == smaller.size() ? large : smaller[whole];
+    return (1.0 - share) * repeated(large, repeat * uv, channel) +
+           share * repeated(small, repeat * uv, channel);
 }
 
 Burn burn_of(double energy, bool thesis_curve) {

@@ -47,7 +47,16 @@ struct OrganMap {
     bool repeats = false;
     double repeat = 1.0;
     [[nodiscard]] bool empty() const { return picture.empty(); }
+    /// Of files: each the mean of 2 x 2 texels of the one before, whose sides are powers of two. None: the
+    /// picture at any distance.
+    std::vector<Buffer> smaller;
+    void make_smaller();
     [[nodiscard]] double at(const glm::dvec2& uv, int channel) const;
+    /// Between the two levels around the one whose texels are as large as a pixel's longer side, weighted by
+    /// how far it is from each. ux, uy: steps of uv from pixel to pixel. `nearer`: what is added to the
+    /// smaller one's weight.
+    [[nodiscard]] double at(const glm::dvec2& uv, int channel, const glm::dvec2& ux, const glm::dvec2& uy,
+                            double nearer) const;
 };
 
 struct Organ {
@@ -60,6 +69,7 @@ struct Organ {
     glm::dmat4 view{1.0};
     glm::dmat4 projection{1.0};
     bool orthographic = false;
+    double slant = 0.0;  ///< of parallel rays along x, for an eye of two
 
     glm::dvec3 colour{1.0};
     OrganMap diffuse;
@@ -93,7 +103,8 @@ struct Organ {
     std::optional<Focus> focus;
     bool blended = false;
     double opacity = 1.0;
-    bool front = true;  ///< faces that are drawn
+    double nearer = 0.0;  ///< see OrganMap: GPUs round these weights
+    bool front = true;    ///< faces that are drawn
     bool back = true;
 };
 

@@ -81,6 +81,24 @@ TEST_P(WatchTest, WithoutWaitingCopiesLieLittleBehind) {
     }
 }
 
+TEST_P(WatchTest, WaitingKeepsCopiesWithinOneFrame) {
+    for (const WatchPath path : {WatchPath::deferred, WatchPath::buffered}) {
+        renderer().set_scene(make_scene({{"column", 1.0}}, {"x"}, 24, 10));
+        renderer().watch({"x"}, path);
+        still_ = false;
+        for (std::uint64_t index = 0; index < 60; ++index) {
+            render(index);
+            renderer().wait_for_watched(index % 2);
+            const WatchedTarget* copy = renderer().watched("x");
+            ASSERT_TRUE(copy != nullptr || index == 0);
+            if (copy != nullptr) {
+                EXPECT_LE(copy->frames_behind, 1U) << "frame " << index;
+                EXPECT_EQ(copy->frames_behind, index - copy->frame);
+            }
+        }
+    }
+}
+
 TEST_P(WatchTest, EmptyTargetsShowTheirClearValue) {
     Port out = write_port("out", "x", 3.0F);
     add("idle",

@@ -176,6 +176,7 @@ std::vector<ProgramDesc> all_programs() {
     Registry registry;
     register_all(registry);
     std::vector<ProgramDesc> programs{{"common/fullscreen.vert", "common/present.frag", {}},
+                                      {"common/fullscreen.vert", "common/fill.frag", {"FAR"}},
                                       {"common/fullscreen.vert", "common/side_by_side.frag", {}}};
     for (const Registry::Entry& entry : registry.entries()) {
         const std::unique_ptr<Effect> effect = entry.make();

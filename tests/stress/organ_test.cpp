@@ -243,6 +243,69 @@ TEST_F(OrganStress, EnergyThatIsNoNumberLeavesTissueUntouched) {
     gl().DeleteTextures(1, &texture);
 }
 
+TEST_F(OrganStress, APictureThatIsNoNumberIsBlurredWithoutIt) {
+    const json scene{{"version", 1},
+                     {"resolution", {8, 8}},
+                     {"passes",
+                      {{{"name", "depth_of_field"},
+                        {"effect", "organ.depth_of_field"},
+                        {"parameters", {{"radius", 0.25}}}}}},
+                     {"targets", {{"final", {{"format", "rgba32f"}}}}},
+                     {"outputs", {"final"}}};
+    std::array<float, 256> texels{};
+    for (std::size_t i = 0; i < texels.size(); ++i) {
+        texels[i] = i % 4 == 3 ? 1.0F : 0.5F;
+    }
+    texels[20] = texels[60] = nan_value;
+    texels[97] = static_cast<float>(infinity);
+    texels[131] = nan_value;
+    texels[179] = -7.0F;
+    GLuint texture = 0;
+    gl().GenTextures(1, &texture);
+    gl().BindTexture(GL_TEXTURE_2D, texture);
+    gl().TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, 8, 8, 0, GL_RGBA, GL_FLOAT, texels.data());
+    const std::array<ImportedTexture, 1> imported{ImportedTexture{.target = "organ.color",
+                                                                  .texture = texture,
+                                                                  .format = PixelFormat::rgba32f,
+                                                                  .width = 8,
+                                                                  .height = 8}};
+    const std::array<ImportedTarget, 1> lent{
+        ImportedTarget{.name = "organ.color", .format = PixelFormat::rgba32f, .width = 8, .height = 8}};
+    renderer().set_scene(parse_scene(scene.dump(), folder() / "scene.json"), lent);
+    Frame frame = renderer().still(0.0);
+    frame.imported = imported;
+    EXPECT_NEAR(render(frame).at("final").at(6, 6, 0), 0.5F, 1e-3F);
+    gl().DeleteTextures(1, &texture);
+}
+
+TEST_F(OrganStress, PaintOfAnotherMeshIsSaid) {
+    write_square(20.0, straight, true);
+    json scene = everything();
+    scene["passes"].erase(4);  // a membrane reads the same energy, from a place of its own
+    std::filesystem::copy_file(folder() / "organ.obj", folder() / "same.obj");
+    for (const char* file : {"same.obj", "other.obj"}) {
+        if (std::string_view(file) == "other.obj") {
+            write_square(25.0, straight, true);
+            std::filesystem::rename(folder() / "organ.obj", folder() / file);
+            std::filesystem::copy_file(folder() / "same.obj", folder() / "organ.obj");
+        }
+        const json mesh{{"file", file}};
+        scene["passes"][0] = {
+            {"name", "bake"}, {"effect", "tissue.bake"}, {"parameters", {{"mesh", mesh}, {"size", 32}}}};
+        scene["passes"][1] = {
+            {"name", "coagulate"},
+            {"effect", "tissue.coagulate"},
+            {"parameters", {{"mesh", mesh}, {"size", 32}, {"contacts", {{{"from_mm", {0, 0, 0}}}}}}}};
+        load(scene);
+        (void)render(0.0);
+        (void)render(0.1);
+        EXPECT_EQ(renderer().log().faults().contains("organ.other_mesh"),
+                  std::string_view(file) == "other.obj")
+            << said();
+    }
+    expect_said_once("organ.other_mesh", "was painted on another mesh");
+}
+
 TEST_F(OrganStress, MapsThatPointInwardsOrNowhereAreFlat) {
     write_square(20.0, straight, true);
     json scene = everything();

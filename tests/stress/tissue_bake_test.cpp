@@ -1,3 +1,4 @@
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -105,6 +106,25 @@ TEST_F(TissueBakes, OrgansOfAnySize) {
         EXPECT_NEAR(pictures.at("tissue.metric").at(16, 16, 0) / texel, 1.0, 1e-4) << unit;
         EXPECT_NEAR(pictures.at("tissue.normal").at(16, 16, 2), 1.0, 1e-3) << unit;
     }
+}
+
+TEST_F(TissueBakes, AHostThatFoldsTheSurfaceToNothing) {
+    (void)bake(square + "vt .2 .2\nvt .8 .2\nvt .8 .8\nvt .2 .8\n" + faces, {{"host_positions", "moved"}});
+    HostValues values;
+    Frame frame = renderer().still(0.0);
+    frame.values = &values;
+    const std::array<std::vector<float>, 4> shapes{
+        std::vector<float>(12, 3.0F), std::vector<float>{0, 0, 0, 1, 0, 0, 2, 0, 0, 3, 0, 0},
+        std::vector<float>{1e30F, 0, 0, -1e30F, 0, 0, 0, 1e30F, 0, 0, 0, 1e30F},
+        std::vector<float>(12, 1e-30F)};
+    for (const std::vector<float>& shape : shapes) {
+        values.set("moved", shape);
+        const Pictures pictures = render(frame);
+        EXPECT_NEAR(share(pictures, 1.0F), 0.36, 0.05) << "texels stand for what they stood for";
+    }
+    values.set("moved", std::vector<float>(12, std::nanf("")));
+    EXPECT_EQ(render(frame).at("tissue.position").at(16, 16, 3), 1.0F);
+    expect_said_once("surface.host_position_not_finite", "not all finite");
 }
 
 TEST_F(TissueBakes, NothingToBake) {
