@@ -26,9 +26,9 @@ void main() {
         vec4 there = texelFetch(u_picture, clamp(ivec2(floor(gl_FragCoord.xy + way)), ivec2(0), last), 0);
         float reach = clamp(abs(2.0 * there.a - 1.0) * u_radius - length(way) + 1.0, 0.0, 1.0);
         float weight = there.a >= here.a ? 1.0 : reach;
-        weight = usable(there) ? weight : 0.0;
-        sum += weight > 0.0 ? weight * there.rgb : vec3(0.0);
+        sum += weight * there.rgb;
         weights += weight;
     }
-    o_colour = vec4(sum / weights, here.a);
+    vec4 mean = vec4(sum / weights, here.a);
+    o_colour = usable(mean) ? mean : here;
 }
