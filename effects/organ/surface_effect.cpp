@@ -47,16 +47,17 @@ void SurfaceEffect::load(Prepare& prepare) {
     to_world_ = placement_matrix(params_.mesh.placement, surface_->centre());
 }
 
-/// What was painted on another mesh lies anywhere on this one.
+/// What was painted on another mesh lies anywhere on this one. The same mesh in another place is none: a
+/// membrane around the organ shows the organ's paint.
 void SurfaceEffect::check_subjects(Prepare& prepare) const {
-    const std::uint64_t own = surface_->placed_key(to_world_);
+    const std::uint64_t own = surface_->key();
     for (const char* port : {"energy", "blood_colour", "blood_normal", "blood_height"}) {
         const std::uint64_t subject = prepare.has(port) ? prepare.subject(port) : 0;
         if (subject != 0 && subject != own) {
             prepare.log().fault("organ.other_mesh",
                                 params_.mesh.file.path.string() + ": what port '" + port +
-                                    "' brings was painted on another mesh, atlas or placement, and lies in "
-                                    "the wrong places here");
+                                    "' brings was painted on another mesh or atlas, and lies in the wrong "
+                                    "places here");
         }
     }
 }

@@ -127,7 +127,7 @@ Work BakeEffect::prepare(Prepare& prepare) {
     }
     content_key_ = Hash().add(parameters_key_).add(surface_->mesh().shape_key()).value();
     Work work = Work::all(content_key_);
-    work.subject = surface_->key();
+    work.subject = surface_->mesh().key();
     return work;
 }
 

@@ -80,11 +80,11 @@ void BakedSurface::move(Prepare& prepare) {
 
 void BakedSurface::check_bake(Prepare& prepare, std::string_view pass) const {
     const std::uint64_t subject = prepare.subject("position");
-    if (subject != 0 && subject != key()) {
+    if (subject != 0 && subject != mesh_->key()) {
         prepare.log().fault("tissue.other_mesh",
                             std::string(pass) + " has '" + name_ +
-                                "' as its mesh, but the bake that it reads is of another mesh, atlas or "
-                                "placement: it will paint in the wrong places");
+                                "' as its mesh, but the bake that it reads is of another mesh or atlas: "
+                                "it will paint in the wrong places");
     }
 }
 

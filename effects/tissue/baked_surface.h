@@ -39,9 +39,7 @@ class BakedSurface {
     /// Takes the host's vertices of this frame, see SurfaceMesh::move().
     void move(Prepare& prepare);
 
-    /// Of the mesh in its place: what a bake of it and all that is painted on that belong to.
-    [[nodiscard]] std::uint64_t key() const { return mesh_->placed_key(to_world_); }
-    /// Says so when the bake that a pass reads is of another mesh or place. `pass`: its effect's name.
+    /// Says so when the bake that a pass reads is of another mesh. `pass`: its effect's name.
     void check_bake(Prepare& prepare, std::string_view pass) const;
     [[nodiscard]] const SurfaceMesh& mesh() const { return *mesh_; }
     [[nodiscard]] const glm::dmat4& to_world() const { return to_world_; }

@@ -109,10 +109,6 @@ std::shared_ptr<SurfaceMesh> SurfaceMesh::load(Assets& assets, const SurfaceMesh
     });
 }
 
-std::uint64_t SurfaceMesh::placed_key(const glm::dmat4& to_world) const {
-    return Hash().add(key_).add(to_world).value();
-}
-
 void SurfaceMesh::move(const HostValues* values, std::string_view name, Log& log) {
     const HostValues::Entry* given = values == nullptr || name.empty() ? nullptr : values->find(name);
     const std::uint64_t version = given == nullptr ? 0 : given->version;

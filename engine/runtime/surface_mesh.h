@@ -51,10 +51,9 @@ class SurfaceMesh {
     /// nothing.
     void move(const HostValues* values, std::string_view name, Log& log);
 
-    /// Content of the mesh as it was loaded.
+    /// Content of the mesh as it was loaded, atlas included; the subject (Work::subject) of what is painted
+    /// on it.
     [[nodiscard]] std::uint64_t key() const { return key_; }
-    /// The same put into the world, for Work::subject.
-    [[nodiscard]] std::uint64_t placed_key(const glm::dmat4& to_world) const;
     /// Content of the present positions; changes whenever they do.
     [[nodiscard]] std::uint64_t shape_key() const { return shape_key_; }
     /// With the present positions and normals; uvs always there.

@@ -172,19 +172,13 @@ TEST_F(TissueTools, QuestionsThatAreNone) {
 TEST_F(TissueTools, ABakeOfAnotherMesh) {
     json scene{{"version", 1}, {"resolution", {16, 16}}, {"outputs", {"tissue.energy"}}};
     scene["passes"] = passes({{"file", Plane().write("stress").string()}});
-    for (const char* key : {"placement", "file"}) {
-        json other = scene;
-        other["passes"][0]["parameters"]["mesh"] =
-            std::string_view(key) == "file"
-                ? json{{"file", Plane{.cells = 3}.write("stress3").string()}}
-                : json{{"file", Plane().write("stress").string()}, {"placement", {{"move_mm", {1, 0, 0}}}}};
-        load(other);
-        time_s_ = 0.0;
-        hold({}, {});
-        (void)hold({7}, tool_at(20, 20, 0), {20, 20, 0, 2, 5, 0});
-    }
+    scene["passes"][0]["parameters"]["mesh"] = {{"file", Plane{.cells = 3}.write("stress3").string()}};
+    load(scene);
+    time_s_ = 0.0;
+    hold({}, {});
+    (void)hold({7}, tool_at(20, 20, 0), {20, 20, 0, 2, 5, 0});
     expect_said_once("tissue.other_mesh", "tissue.coagulate has");
-    expect_said_once("tissue.other_mesh", "of another mesh, atlas or placement");
+    expect_said_once("tissue.other_mesh", "of another mesh or atlas");
 }
 
 }  // namespace

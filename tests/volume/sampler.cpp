@@ -29,8 +29,8 @@ void main() {
 
 /// A fetch of the texture unit, and one with weights of 8 bits in its place.
 constexpr std::string_view own_sampler = "uniform sampler3D u_volume;";
-constexpr std::string_view own_fetch = "textureLod(u_volume, place, 0.0).CHANNELS";
-constexpr std::string_view eight_bit_fetch = "eight_bit_texel(place)";
+constexpr std::string_view own_fetch = "textureLod(u_volume, within_texture(place), 0.0).CHANNELS";
+constexpr std::string_view eight_bit_fetch = "eight_bit_texel(within_texture(place))";
 constexpr std::string_view eight_bit_texel = R"(
 float eight_bit_texel(vec3 place) {
     ivec3 last = textureSize(u_volume, 0) - 1;
