@@ -45,11 +45,12 @@ struct SamplingParams {
 
 /// Slabs of one volume under one placement.
 struct Lattice {
-    double slab_mm = 1.0;      ///< length of a slab in the world
-    double slab_voxels = 0.5;  ///< the most voxels that a slab crosses along any axis, in any direction,
-                               ///< away from the fovea, too; curvilinear: not known, since it grows towards the axis
-    double slab_local = 0.5;   ///< the most that a slab can be long in local coordinates
-    int slab_limit = 1;        ///< slabs of a ray, or cells it crosses, are fewer
+    double slab_mm = 1.0;  ///< length of a slab in the world
+    double slab_voxels =
+        0.5;  ///< the most voxels that a slab crosses along any axis, in any direction,
+              ///< away from the fovea, too; curvilinear: not known, since it grows towards the axis
+    double slab_local = 0.5;  ///< the most that a slab can be long in local coordinates
+    int slab_limit = 1;       ///< slabs of a ray, or cells it crosses, are fewer
 };
 
 /// No ray turns its loops more often. llvmpipe stops loops after 65,535 turns in all without a word (the

@@ -126,7 +126,8 @@ void SurfaceMesh::move(const HostValues* values, std::string_view name, Log& log
     if (given != nullptr &&
         !std::ranges::all_of(given->values, [](float value) { return std::abs(value) < farthest_mm; })) {
         log.fault("surface.host_position_not_finite",
-                  "host values '" + std::string(name) + "' are not all finite and below 1e15 mm; the file's positions stay");
+                  "host values '" + std::string(name) +
+                      "' are not all finite and below 1e15 mm; the file's positions stay");
         given = nullptr;
     }
     if (given != nullptr) {

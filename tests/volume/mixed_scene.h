@@ -59,12 +59,8 @@ inline nlohmann::json mixed_scene(nlohmann::json passes, nlohmann::json paramete
             targets["mesh.colour"] = {{"format", "rgba32f"}};
         }
     }
-    return {{"version", 1},
-            {"resolution", {width, height}},
-            {"camera", camera},
-            {"passes", passes},
-            {"targets", targets},
-            {"outputs", {"volume.colour"}}};
+    return {{"version", 1},       {"resolution", {width, height}}, {"camera", camera}, {"passes", passes},
+            {"targets", targets}, {"outputs", {"volume.colour"}}};
 }
 
 inline nlohmann::json camera_at(glm::dvec3 eye, double near_mm = 20.0, double far_mm = 1500.0) {
