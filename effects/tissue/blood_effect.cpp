@@ -346,8 +346,6 @@ void BloodEffect::run_step(const Pass& pass) {
 
 void BloodEffect::draw(const Pass& pass) {
     BloodState& state = *state_;
-    GLint target = 0;  // of this pass; the steps below draw elsewhere
-    pass.gl().GetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &target);
     if (!state.gpu || state.gpu_shape_key != state.shape_key) {
         state.gpu_shape_key = state.shape_key;
         state.gpu = std::make_unique<BloodGpu>(pass.gl(), params_.size, params_.liquid.max_drops);
@@ -375,16 +373,16 @@ void BloodEffect::draw(const Pass& pass) {
             state.gpu->ask_tiles(state.looks);
         }
     }
-    show(pass, target);
+    show(pass);
 }
 
-void BloodEffect::show(const Pass& pass, GLint target) {
+void BloodEffect::show(const Pass& pass) {
     BloodState& state = *state_;
     using Shown = BloodGpu::Shown;
     const bool same = shown_version_ != 0 && shown_version_ == state.shown_version;
     const Shown before = !pass.kept() ? Shown::nothing : same ? Shown::last : Shown::unknown;
     state.gpu->begin_picture(pass, medium_, state.ring.alive(), before);
-    pass.gl().BindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(target));
+    pass.bind_target();  // the steps draw elsewhere
     pass.raster(cover_state);
     const gl::Program& program = pass.use(programs_.size() - 1);
     pass.bind(program, "u_relief", state.gpu->relief(), gl::Filter::nearest);

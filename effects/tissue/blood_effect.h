@@ -42,7 +42,7 @@ class BloodEffect final : public Effect {
     void set_tools(std::int64_t step);
     void update_surface(const Pass& pass);
     void run_step(const Pass& pass);
-    void show(const Pass& pass, GLint target);
+    void show(const Pass& pass);
     void collect_drops(std::int64_t step);
     void fly(double dt);
     [[nodiscard]] glm::dvec3 gravity_mm_s2() const;

@@ -46,8 +46,6 @@ bool can_fill(glm::ivec2 coarse, glm::ivec2 lattice, glm::ivec2 size) {
 
 void MixedPlan::draw(const Pass& pass, const gl::Program& program, bool compute) {
     const glm::ivec2 tiles = (pass.size() + tile_size - 1) / tile_size;
-    GLint target = 0;  // of this pass; what follows binds others
-    pass.gl().GetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &target);
     if (!tiles_ || tiles_->width() != tiles.x || tiles_->height() != tiles.y) {
         target_.reset();
         tiles_ = gl::Texture::make_2d(pass.gl(), tiles.x, tiles.y, PixelFormat::r8, "plan of tiles");
@@ -60,7 +58,7 @@ void MixedPlan::draw(const Pass& pass, const gl::Program& program, bool compute)
         gl::apply(pass.gl(), gl::overwrite_state, {0, 0, tiles.x, tiles.y});
         pass.draw_generated(GL_TRIANGLES, 3, 1);
     }
-    pass.gl().BindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(target));
+    pass.bind_target();
     pass.raster(gl::overwrite_state);
 }
 

@@ -9,10 +9,6 @@
 namespace viscera {
 namespace {
 
-bool makes_content(Access access) {
-    return access == Access::write || access == Access::modify;
-}
-
 /// Finds which passes depend on the eye, then writes the graph that has them twice.
 class Expander {
   public:
@@ -22,6 +18,9 @@ class Expander {
         }
         for (const ImportedTarget& imported : graph.imported) {
             imported_.insert(imported.name);
+        }
+        for (std::size_t p = 0; p < graph.passes.size(); ++p) {
+            note_writes(p, at_end_);
         }
     }
 
@@ -85,10 +84,6 @@ class Expander {
             found = found || doubled_[pass] == 0;
             doubled_[pass] = 1;
         };
-        Writers at_end;
-        for (std::size_t p = 0; p < graph_.passes.size(); ++p) {
-            note_writes(p, at_end);
-        }
         Writers last;
         for (std::size_t p = 0; p < graph_.passes.size(); ++p) {
             const GraphPass& pass = graph_.passes[p];
@@ -96,7 +91,7 @@ class Expander {
                 continue;
             }
             for (const GraphPort& port : pass.ports) {
-                const bool sees = port.access == Access::previous ? differs(port.target, at_end)
+                const bool sees = port.access == Access::previous ? differs(port.target, at_end_)
                                   : port.access != Access::write  ? differs(port.target, last)
                                                                   : false;
                 if (sees) {
@@ -120,9 +115,10 @@ class Expander {
             pass.name = eye_name(pass.name, eye);
         }
         for (GraphPort& port : pass.ports) {
-            const bool per_eye = eye >= 0 && (makes_content(port.access)        ? true
-                                              : port.access == Access::previous ? history_differs(port.target)
-                                                                                : differs(port.target, last));
+            const bool per_eye =
+                eye >= 0 && (makes_content(port.access)        ? true
+                             : port.access == Access::previous ? differs(port.target, at_end_)
+                                                               : differs(port.target, last));
             if (!per_eye) {
                 continue;
             }
@@ -135,14 +131,6 @@ class Expander {
         }
         result_.graph.passes.push_back(std::move(pass));
         result_.passes.push_back({index, eye});
-    }
-
-    [[nodiscard]] bool history_differs(std::string_view name) const {
-        Writers at_end;
-        for (std::size_t p = 0; p < graph_.passes.size(); ++p) {
-            note_writes(p, at_end);
-        }
-        return differs(name, at_end);
     }
 
     void fault(const GraphPass& pass, const GraphPort& port, std::string message) {
@@ -191,6 +179,7 @@ class Expander {
     EyeGraph result_;
     std::vector<char> doubled_;  ///< by pass
     std::set<std::string, std::less<>> imported_;
+    Writers at_end_;  ///< of the frame: what its next one reads as the previous content
 };
 
 }  // namespace

@@ -18,6 +18,10 @@ enum class Access {
 };
 
 [[nodiscard]] std::string_view to_string(Access access);
+/// Whether a pass draws into the target.
+[[nodiscard]] constexpr bool makes_content(Access access) {
+    return access == Access::write || access == Access::modify;
+}
 
 /// Size of a target: a fraction of the frame, or absolute when width and height are > 0.
 struct SizeRule {

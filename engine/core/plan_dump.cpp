@@ -33,10 +33,6 @@ std::string size_text(int width, int height) {
     return std::to_string(width) + "x" + std::to_string(height);
 }
 
-bool makes_content(Access access) {
-    return access == Access::write || access == Access::modify;
-}
-
 /// Targets that a pass samples or makes, comma-separated: "base, last (previous)", "depth (modify)".
 std::string targets_of(const Plan& plan, const PlanPass& pass, bool made) {
     std::string text;

@@ -8,10 +8,6 @@
 namespace viscera {
 namespace {
 
-bool makes_content(Access access) {
-    return access == Access::write || access == Access::modify;
-}
-
 class Resolver {
   public:
     Resolver(const Graph& graph, int width, int height, int max_size);

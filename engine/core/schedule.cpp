@@ -22,10 +22,6 @@ std::uint64_t empty_key(const PlanContent& content) {
         .value();
 }
 
-bool makes_content(Access access) {
-    return access == Access::write || access == Access::modify;
-}
-
 }  // namespace
 
 std::string_view to_string(PassStatus status) {

@@ -21,10 +21,6 @@ double milliseconds_since(Clock::time_point start) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-bool makes_content(Access access) {
-    return access == Access::write || access == Access::modify;
-}
-
 /// Size of what a pass draws into [pixels]; {0, 0} when nobody needs any of it.
 glm::ivec2 target_size(const Plan& plan, const PlanPass& pass) {
     for (const PlanBinding& binding : pass.bindings) {
@@ -335,8 +331,8 @@ bool Executor::draw(std::size_t p) {
     }
     target.bind();
     const Cleared cleared = clear(state, pass, target, region.bounds());
-    const Pass view(shared_, frames_[state.frame], state.programs, state.inputs, state.outputs, size, region,
-                    cleared.kept);
+    const Pass view(shared_, frames_[state.frame], state.programs, state.inputs, state.outputs, target, size,
+                    region, cleared.kept);
     view.raster(gl::overwrite_state);
     state.effect->draw(view);
     fill(target, cleared);

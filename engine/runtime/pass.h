@@ -7,6 +7,7 @@
 
 #include "engine/core/log.h"
 #include "engine/gl/buffer.h"
+#include "engine/gl/framebuffer.h"
 #include "engine/gl/program.h"
 #include "engine/gl/raster_state.h"
 #include "engine/gl/sampler.h"
@@ -52,13 +53,14 @@ class Pass {
     };
 
     Pass(const Shared& shared, const Frame& frame, std::span<ShaderLibrary::Entry* const> programs,
-         std::span<const Input> inputs, std::span<const Output> outputs, glm::ivec2 size,
-         const PixelRegion& region, bool kept)
+         std::span<const Input> inputs, std::span<const Output> outputs, const gl::Framebuffer& target,
+         glm::ivec2 size, const PixelRegion& region, bool kept)
         : shared_(shared),
           frame_(frame),
           programs_(programs),
           inputs_(inputs),
           outputs_(outputs),
+          target_(target),
           size_(size),
           region_(region),
           bounds_(region.bounds()),
@@ -88,6 +90,8 @@ class Pass {
     void bind(const gl::Program& program, std::string_view uniform, const gl::Texture& texture,
               gl::Filter filter = gl::Filter::linear, gl::Wrap wrap = gl::Wrap::clamp) const;
 
+    /// Binds the targets again, after an effect has drawn into textures of its own.
+    void bind_target() const { target_.bind(); }
     /// Sets the whole raster state, confined to region(). Before draw() it is gl::overwrite_state.
     void raster(const gl::RasterState& state) const;
     /// Shades every pixel of rects() once with the program in use (vertex shader common/fullscreen.vert).
@@ -117,6 +121,7 @@ class Pass {
     std::span<ShaderLibrary::Entry* const> programs_;
     std::span<const Input> inputs_;
     std::span<const Output> outputs_;
+    const gl::Framebuffer& target_;
     glm::ivec2 size_;
     PixelRegion region_;
     PixelRect bounds_;
