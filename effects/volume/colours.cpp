@@ -6,6 +6,7 @@
 #include <cstring>
 #include <limits>
 
+#include "effects/volume/derived_source.h"
 #include "engine/core/error.h"
 #include "engine/core/hash.h"
 
@@ -73,45 +74,33 @@ std::vector<std::byte> colours(const Volume& volume, const VoxelBox& box, const 
 }
 
 /// Colours that follow the volume they are made from.
-struct Colours {
-    Source source;
-    std::unique_ptr<LiveVolume> live;
+struct Colours : DerivedSource {
+    using DerivedSource::DerivedSource;
     Range range;
-    std::uint64_t version = 0;  ///< of the voxels
 };
 
 void follow(Colours& made, const Source& voxels) {
     const Volume& volume = voxels.volume();
     bool everything = true;
-    std::vector<VoxelBox> changed;
-    if (voxels.live != nullptr && made.version != 0) {
-        changed = voxels.live->changes_since(made.version, everything);
-    }
+    const std::vector<VoxelBox> changed = made.changes(voxels, everything);
     everything = everything || !std::ranges::all_of(changed, [&](const VoxelBox& box) {
                      return made.range.holds(range_of(volume, box));
                  });
     if (everything) {
         const VoxelBox all{glm::ivec3(0), volume.grid.dims};
         made.range = range_of(volume, all);
-        Volume rgba{.grid = volume.grid,
-                    .type = ScalarType::u16,
-                    .channels = 4,
-                    .voxels = colours(volume, all, made.range),
-                    .slope = 1.0 / most,
-                    .source = volume.source};
-        if (made.live == nullptr) {
-            made.live = std::make_unique<LiveVolume>(std::move(rgba));
-        } else {
-            made.live->replace(std::move(rgba));
-        }
+        made.replace({.grid = volume.grid,
+                      .type = ScalarType::u16,
+                      .channels = 4,
+                      .voxels = colours(volume, all, made.range),
+                      .slope = 1.0 / most,
+                      .source = volume.source});
     } else {
         for (const VoxelBox& box : changed) {
-            made.live->update(box, colours(volume, box, made.range));
+            made.update(box, colours(volume, box, made.range));
         }
     }
-    made.version = voxels.version();
-    made.source.live = made.live.get();
-    made.source.statistics = {.min = 0.0, .max = 1.0};
+    made.settle(voxels, {.min = 0.0, .max = 1.0});
 }
 
 }  // namespace
@@ -124,15 +113,7 @@ std::shared_ptr<const Source> load_colours(Assets& assets, const Source& source,
                         std::to_string(channels));
     }
     const std::uint64_t key = Hash().add("colours").add(source.key).value();
-    const std::shared_ptr<Colours> made = assets.shared<Colours>(key, [&] {
-        auto colours = std::make_shared<Colours>();
-        colours->source.key = key;
-        return colours;
-    });
-    if (made->version != source.version()) {
-        follow(*made, source);
-    }
-    return {made, &made->source};
+    return load_derived<Colours>(assets, key, source, [&](Colours& made) { follow(made, source); });
 }
 
 }  // namespace viscera::volume

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <limits>
 
+#include "effects/volume/derived_source.h"
 #include "engine/core/error.h"
 #include "engine/core/hash.h"
 
@@ -85,11 +86,9 @@ void each_gradient(const Volume& volume, int channel, float empty, const VoxelBo
 }
 
 /// Gradients that follow the volume they are made from.
-struct Gradients {
-    Source source;
-    std::unique_ptr<LiveVolume> live;
-    float greatest = 0.0F;      ///< component
-    std::uint64_t version = 0;  ///< of the voxels
+struct Gradients : DerivedSource {
+    using DerivedSource::DerivedSource;
+    float greatest = 0.0F;  ///< component
 };
 
 float greatest_in(const Volume& volume, int channel, float empty, const VoxelBox& box,
@@ -132,10 +131,7 @@ void follow(Assets& assets, Gradients& made, const Source& voxels, int channel) 
     const Volume& volume = voxels.volume();
     const auto empty = static_cast<float>((voxels.statistics.min - volume.intercept) / volume.slope);
     bool everything = true;
-    std::vector<VoxelBox> changed;
-    if (voxels.live != nullptr && made.version != 0) {
-        changed = voxels.live->changes_since(made.version, everything);
-    }
+    std::vector<VoxelBox> changed = made.changes(voxels, everything);
     for (VoxelBox& box : changed) {
         box = grown(box, volume.grid);
         everything = everything || greatest_in(volume, channel, empty, box, {}) > made.greatest;
@@ -148,39 +144,26 @@ void follow(Assets& assets, Gradients& made, const Source& voxels, int channel) 
         };
         const VoxelBox all{glm::ivec3(0), volume.grid.dims};
         made.greatest = greatest_in(volume, channel, empty, all, half(0.0));
-        Volume gradients{.grid = volume.grid,
-                         .type = ScalarType::i16,
-                         .channels = 4,
-                         .voxels = encoded(volume, channel, empty, all, made.greatest, half(0.5)),
-                         .slope = made.greatest > 0.0F ? static_cast<double>(made.greatest) / most : 1.0,
-                         .source = volume.source};
-        if (made.live == nullptr) {
-            made.live = std::make_unique<LiveVolume>(std::move(gradients));
-        } else {
-            made.live->replace(std::move(gradients));
-        }
+        made.replace({.grid = volume.grid,
+                      .type = ScalarType::i16,
+                      .channels = 4,
+                      .voxels = encoded(volume, channel, empty, all, made.greatest, half(0.5)),
+                      .slope = made.greatest > 0.0F ? static_cast<double>(made.greatest) / most : 1.0,
+                      .source = volume.source});
     } else {
         for (const VoxelBox& box : changed) {
-            made.live->update(box, encoded(volume, channel, empty, box, made.greatest, {}));
+            made.update(box, encoded(volume, channel, empty, box, made.greatest, {}));
         }
     }
-    made.version = voxels.version();
-    made.source.live = made.live.get();
+    made.settle(voxels, {});
 }
 
 }  // namespace
 
 std::shared_ptr<const Source> load_gradients(Assets& assets, const Source& source, int channel) {
     const std::uint64_t key = Hash().add("gradients").add(source.key).add(channel).value();
-    const std::shared_ptr<Gradients> made = assets.shared<Gradients>(key, [&] {
-        auto gradients = std::make_shared<Gradients>();
-        gradients->source.key = key;
-        return gradients;
-    });
-    if (made->version != source.version()) {
-        follow(assets, *made, source, channel);
-    }
-    return {made, &made->source};
+    return load_derived<Gradients>(assets, key, source,
+                                   [&](Gradients& made) { follow(assets, made, source, channel); });
 }
 
 }  // namespace viscera::volume

@@ -7,6 +7,7 @@
 #include <thread>
 #include <vector>
 
+#include "effects/volume/derived_source.h"
 #include "effects/volume/gpu_volume.h"
 #include "engine/core/content_hash.h"
 #include "engine/core/error.h"
@@ -200,37 +201,22 @@ std::vector<std::byte> all_coefficients(Assets& assets, const Source& source, in
     return {bytes.begin(), bytes.end()};
 }
 
-/// Coefficients that follow the volume they are made from.
-struct Coefficients {
-    Source source;
-    std::unique_ptr<LiveVolume> live;
-    std::uint64_t version = 0;  ///< of the voxels
-};
-
-void follow(Assets& assets, Coefficients& coefficients, const Source& voxels, int channel) {
+void follow(Assets& assets, DerivedSource& coefficients, const Source& voxels, int channel) {
     const Volume& volume = voxels.volume();
     const auto empty = static_cast<float>((voxels.statistics.min - volume.intercept) / volume.slope);
     const glm::ivec3 dims = volume.grid.dims;
     bool everything = true;
-    std::vector<VoxelBox> changed;
-    if (voxels.live != nullptr && coefficients.version != 0) {
-        changed = voxels.live->changes_since(coefficients.version, everything);
-    }
+    const std::vector<VoxelBox> changed = coefficients.changes(voxels, everything);
     if (everything) {
-        Volume made{.grid = volume.grid,
-                    .type = ScalarType::f32,
-                    .channels = 1,
-                    .voxels = all_coefficients(assets, voxels, channel, empty),
-                    .slope = volume.slope,
-                    .intercept = volume.intercept,
-                    .unit = volume.unit,
-                    .narrowing_error = volume.narrowing_error,
-                    .source = volume.source};
-        if (coefficients.live == nullptr) {
-            coefficients.live = std::make_unique<LiveVolume>(std::move(made));
-        } else {
-            coefficients.live->replace(std::move(made));
-        }
+        coefficients.replace({.grid = volume.grid,
+                              .type = ScalarType::f32,
+                              .channels = 1,
+                              .voxels = all_coefficients(assets, voxels, channel, empty),
+                              .slope = volume.slope,
+                              .intercept = volume.intercept,
+                              .unit = volume.unit,
+                              .narrowing_error = volume.narrowing_error,
+                              .source = volume.source});
     }
     for (VoxelBox box : changed) {
         const int ring = volume.grid.shape.wrap_axis();
@@ -243,11 +229,9 @@ void follow(Assets& assets, Coefficients& coefficients, const Source& voxels, in
         std::vector<float> values = stored_values(volume, channel, needed, empty);
         static_cast<void>(make_coefficients(needed.size, values, 0, {}, ring));  // a few voxels: nobody waits
         values = cut_out(values, needed, reached);
-        coefficients.live->update(reached, std::as_bytes(std::span(values)));
+        coefficients.update(reached, std::as_bytes(std::span(values)));
     }
-    coefficients.version = voxels.version();
-    coefficients.source.live = coefficients.live.get();
-    coefficients.source.statistics = voxels.statistics;
+    coefficients.settle(voxels, voxels.statistics);
 }
 
 }  // namespace
@@ -302,15 +286,9 @@ bool make_coefficients(const glm::ivec3& dims, std::span<float> voxels, int thre
 
 std::shared_ptr<const Source> load_coefficients(Assets& assets, const Source& source, int channel) {
     const std::uint64_t key = Hash().add("coefficients").add(source.key).add(channel).value();
-    const std::shared_ptr<Coefficients> coefficients = assets.shared<Coefficients>(key, [&] {
-        auto made = std::make_shared<Coefficients>();
-        made->source.key = key;
-        return made;
+    return load_derived<DerivedSource>(assets, key, source, [&](DerivedSource& coefficients) {
+        follow(assets, coefficients, source, channel);
     });
-    if (coefficients->version != source.version()) {
-        follow(assets, *coefficients, source, channel);
-    }
-    return {coefficients, &coefficients->source};
 }
 
 }  // namespace viscera::volume
