@@ -98,7 +98,6 @@ const std::shared_ptr<const TexelMap>& BakedSurface::map(Assets& assets) {
 TileTree& BakedSurface::tiles(Assets& assets) {
     if (!tiles_) {
         tiles_.emplace(map(assets));
-        tiles_shape_ = 0;
     }
     if (tiles_shape_ != mesh_->shape_key()) {
         tiles_shape_ = mesh_->shape_key();

@@ -234,7 +234,7 @@ void BloodGpu::take_surface(const Pass& pass, const BloodMedium& medium, bool em
     }
     if (!seams_->empty()) {
         const gl::Program& links = use(pass, Shader::link);
-        bind(pass, links, "u_links", seams_->links);
+        bind(pass, links, "u_links", seams_->links.texture());
         pass.bind(links, "u_position", "position");
         pass.bind(links, "u_normal", "normal");
         pass.bind(links, "u_metric", "metric");
@@ -276,7 +276,7 @@ void BloodGpu::mark_drops(const Pass& pass, const BloodMedium& medium, const Dro
 void BloodGpu::mark_pairs(const Pass& pass, const SeamPairs& pairs, const gl::Texture& marked,
                           const gl::Framebuffer& target) const {
     const gl::Program& program = use(pass, Shader::mark_of_seams);
-    bind(pass, program, "u_pairs", pairs.list);
+    bind(pass, program, "u_pairs", pairs.list.texture());
     bind(pass, program, "u_marked", marked);
     draw_into(pass, target, mark_state);
     pass.draw_generated(GL_POINTS, pairs.count, 1);

@@ -8,18 +8,6 @@
 namespace viscera::tissue {
 namespace {
 
-constexpr int row = 512;  // texels of a list
-
-template <class Item>
-gl::Texture list_of(const gl::Functions& gl, std::vector<Item> items, std::string_view label) {
-    static_assert(sizeof(Item) == 4 * sizeof(float));
-    const std::size_t rows = std::max<std::size_t>((items.size() + row - 1) / row, 1);
-    items.resize(rows * row);
-    gl::Texture texture = gl::Texture::make_2d(gl, row, static_cast<int>(rows), PixelFormat::rgba32f, label);
-    texture.upload(std::as_bytes(std::span(items)));
-    return texture;
-}
-
 SeamPairs pairs_of(const gl::Functions& gl, std::span<const SeamLink> links, std::span<const SeamJump> jumps,
                    int size, int side) {
     std::vector<std::array<int, 4>> found;
@@ -42,7 +30,9 @@ SeamPairs pairs_of(const gl::Functions& gl, std::span<const SeamLink> links, std
     std::ranges::transform(found, std::back_inserter(texels), [](const std::array<int, 4>& pair) {
         return glm::vec4(glm::ivec4(pair[0], pair[1], pair[2], pair[3]));
     });
-    return {list_of(gl, std::move(texels), "squares that seams join"), static_cast<int>(found.size())};
+    SeamPairs pairs{.count = static_cast<int>(found.size())};
+    pairs.list.upload(gl, texels, "squares that seams join");
+    return pairs;
 }
 
 }  // namespace
@@ -50,12 +40,16 @@ SeamPairs pairs_of(const gl::Functions& gl, std::span<const SeamLink> links, std
 BloodSeams make_seams(const gl::Functions& gl, std::span<const SeamLink> links,
                       std::span<const SeamJump> jumps, int size, int tile_side, int block_side) {
     std::vector<float> first_of_cell(static_cast<std::size_t>(size) * static_cast<std::size_t>(size));
-    std::vector<SeamLink> by_cell = links_by_cell(links, first_of_cell);
+    std::vector<glm::vec4> by_cell;
+    std::ranges::transform(
+        links_by_cell(links, first_of_cell), std::back_inserter(by_cell),
+        [](const SeamLink& link) { return glm::vec4(link.from, link.to, link.side, link.share); });
     gl::Texture first = gl::Texture::make_2d(gl, size, size, PixelFormat::r32f, "cells at seams");
     first.upload(std::as_bytes(std::span(first_of_cell)));
-    gl::Texture listed = list_of(gl, std::move(by_cell), "parts of seams");
-    gl::Texture pulls =
-        gl::Texture::make_2d(gl, row, listed.height(), PixelFormat::rgba32f, "fall across seams");
+    ListTexture listed;
+    listed.upload(gl, by_cell, "parts of seams");
+    gl::Texture pulls = gl::Texture::make_2d(gl, listed.texture().width(), listed.rows(),
+                                             PixelFormat::rgba32f, "fall across seams");
     gl::Framebuffer pulls_target(gl, pulls, "fall across seams");
     return {pairs_of(gl, links, jumps, size, tile_side),
             pairs_of(gl, links, jumps, size, block_side),

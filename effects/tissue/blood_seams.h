@@ -2,6 +2,7 @@
 
 #include <span>
 
+#include "effects/tissue/list_texture.h"
 #include "effects/tissue/seam_links.h"
 #include "engine/gl/framebuffer.h"
 #include "engine/gl/texture.h"
@@ -10,7 +11,7 @@ namespace viscera::tissue {
 
 /// Squares of a texture that seams join, each pair once: x, y here, x, y across.
 struct SeamPairs {
-    gl::Texture list;
+    ListTexture list;
     int count = 0;
 };
 
@@ -19,7 +20,7 @@ struct BloodSeams {
     SeamPairs tiles;
     SeamPairs blocks;
     gl::Texture first;  ///< by cell: where its links begin, or -1
-    gl::Texture links;  ///< of links_by_cell()
+    ListTexture links;  ///< of links_by_cell()
     gl::Texture pulls;  ///< what drives a film through each link: of blood_link.frag
     gl::Framebuffer pulls_target;
 

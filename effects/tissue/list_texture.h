@@ -18,6 +18,8 @@ class ListTexture {
     /// Throws Error(limit) for more than the device's largest texture takes.
     void upload(const gl::Functions& gl, std::span<const glm::vec4> items, std::string_view label);
     [[nodiscard]] const gl::Texture& texture() const { return *texture_; }
+    /// Rows that hold items, of the texture's.
+    [[nodiscard]] int rows() const { return static_cast<int>(rows_.size()) / texture_->width(); }
 
   private:
     std::optional<gl::Texture> texture_;

@@ -7,6 +7,7 @@ uniform sampler2D u_top;
 uniform float u_one;
 uniform bool u_dries;  // also where it stands
 #ifdef SEAMS
+#include "tissue/list.glsl"
 uniform sampler2D u_seam_parts;  // where a cell's parts of seams begin in u_pulls, or -1
 uniform sampler2D u_pulls;       // of blood_link.frag
 #endif
@@ -35,12 +36,11 @@ float through(vec4 face, float a, float b, float slope_a, float slope_b) {
 /// Volume that comes across seams [mm^3].
 float across_seams(ivec2 here, float height) {
     int width = textureSize(u_film, 0).x;
-    int row = textureSize(u_pulls, 0).x;
     float came = 0.0;
     int part = int(texelFetch(u_seam_parts, here, 0).r);
     bool more = part >= 0;
     while (more) {
-        vec4 pull = texelFetch(u_pulls, ivec2(part % row, part / row), 0);
+        vec4 pull = list_item(u_pulls, part);
         int cell = int(abs(pull.w)) - 1;
         float there = texelFetch(u_film, ivec2(cell % width, cell / width), 0).x;
         came -= pull.z > 0.0 ? exchange(pull.y - pull.x * (there - height), pull.x, pull.z, height, there) : 0.0;

@@ -1,6 +1,7 @@
 #version 330 core
 // Marks tiles and blocks by points: those in which drops are, or those across seams from marked ones.
 #ifdef SEAMS
+#include "tissue/list.glsl"
 uniform sampler2D u_pairs;   // one side, other side: x, y each, of tiles or blocks that a seam joins
 uniform sampler2D u_marked;
 #else
@@ -17,8 +18,7 @@ void main() {
     gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
     gl_PointSize = 1.0;
 #ifdef SEAMS
-    ivec2 pairs = textureSize(u_pairs, 0);
-    vec4 pair = texelFetch(u_pairs, ivec2(gl_VertexID % pairs.x, gl_VertexID / pairs.x), 0);
+    vec4 pair = list_item(u_pairs, gl_VertexID);
     ivec2 last = textureSize(u_marked, 0) - 1;
     float most = 0.0;
     for (int i = 0; i < 9; ++i) {
