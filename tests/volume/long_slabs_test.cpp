@@ -10,19 +10,6 @@
 namespace viscera::test {
 namespace {
 
-/// Counts slabs that were taken (red).
-ShaderTexts counting() {
-    constexpr std::array<std::string_view, 2> functions{"take_slab", "finish"};
-    return {{"volume/function_composite.glsl",
-             wrapped("volume/function_composite.glsl", functions,
-                     "float taken = 0.0;\n"
-                     "bool take_slab(inout State state, Slab slab) {\n"
-                     "    taken += 1.0;\n"
-                     "    return plain_take_slab(state, slab);\n"
-                     "}\n"
-                     "vec4 finish(State state) { return vec4(taken, 0.0, 0.0, 1.0); }\n")}};
-}
-
 class LongSlabs : public testing::Test {
   protected:
     static nlohmann::json parameters(std::string_view scheme, double step, double tolerance,
@@ -32,7 +19,7 @@ class LongSlabs : public testing::Test {
                  {{"scheme", scheme}, {"step", step}, {"tolerance", tolerance}, {"termination", 0.0}}}};
     }
     static double slabs(const LiveVolume& volume, const nlohmann::json& parameters, const Look& look) {
-        VolumeStage stage(counting());
+        VolumeStage stage(slab_counting());
         const Shot shot = stage.cast(volume, parameters, look);
         double sum = 0.0;
         for (int i = 0; i < 64 * 64; ++i) {

@@ -89,16 +89,6 @@ TEST(SectorChanges, PartsOnEitherSideOfTheSeamShowAsInAVolumeMadeAnew) {
 }
 
 TEST(SectorLongSlabs, AreFewerAndStayWithinTheTolerance) {
-    constexpr std::array<std::string_view, 2> functions{"take_slab", "finish"};
-    const ShaderTexts counting{
-        {"volume/function_composite.glsl",
-         wrapped("volume/function_composite.glsl", functions,
-                 "float taken = 0.0;\n"
-                 "bool take_slab(inout State state, Slab slab) {\n"
-                 "    taken += 1.0;\n"
-                 "    return plain_take_slab(state, slab);\n"
-                 "}\n"
-                 "vec4 finish(State state) { return vec4(taken, 0.0, 0.0, 1.0); }\n")}};
     const auto slabs = [](const Image& image) {
         double sum = 0.0;
         for (int i = 0; i < image.width * image.height; ++i) {
@@ -119,7 +109,7 @@ TEST(SectorLongSlabs, AreFewerAndStayWithinTheTolerance) {
             const auto both = [&](double tolerance) {
                 p["sampling"]["tolerance"] = tolerance;
                 VolumeStage plain;
-                VolumeStage counted(counting);
+                VolumeStage counted(slab_counting());
                 return std::pair(plain.cast(volume, p, look, glm::ivec2(40)).image,
                                  slabs(counted.cast(volume, p, look, glm::ivec2(40)).image));
             };

@@ -168,25 +168,12 @@ TEST_F(SectorSkipping, FindsSingleVoxelsAtSeamAxisAndPoles) {
     EXPECT_GT(lit_, 500);
 }
 
-/// Counts slabs that were taken.
-ShaderTexts counting() {
-    constexpr std::array<std::string_view, 2> functions{"take_slab", "finish"};
-    return {{"volume/function_composite.glsl",
-             wrapped("volume/function_composite.glsl", functions,
-                     "float taken = 0.0;\n"
-                     "bool take_slab(inout State state, Slab slab) {\n"
-                     "    taken += 1.0;\n"
-                     "    return plain_take_slab(state, slab);\n"
-                     "}\n"
-                     "vec4 finish(State state) { return vec4(taken, 0.0, 0.0, 1.0); }\n")}};
-}
-
 TEST(SectorSkippingCounts, LeavesOutMostOfTheDark) {
     for (const NamedShape& named : some_shapes()) {
         if (std::string_view("ring ball").find(named.name) == std::string_view::npos) {
             continue;
         }
-        VolumeStage stage(counting());
+        VolumeStage stage(slab_counting());
         const glm::ivec3 n = 2 * dims_of(named.shape);
         const LiveVolume volume(sector_vessels(named.shape, n));
         const Look look{.eye_mm = sector_centre(volume.volume().grid) + glm::dvec3(110, -150, 80),

@@ -168,22 +168,6 @@ TEST_F(Skipping, FindsVesselsOfOneVoxel) {
     }
 }
 
-/// Counts slabs that were taken (red) and those that changed the picture (green).
-ShaderTexts counting() {
-    constexpr std::array<std::string_view, 2> functions{"take_slab", "finish"};
-    return {{"volume/function_composite.glsl",
-             wrapped("volume/function_composite.glsl", functions,
-                     "float taken = 0.0;\nfloat needed = 0.0;\n"
-                     "bool take_slab(inout State state, Slab slab) {\n"
-                     "    float depth = state.depth;\n"
-                     "    bool stop = plain_take_slab(state, slab);\n"
-                     "    taken += 1.0;\n"
-                     "    needed += state.depth > depth ? 1.0 : 0.0;\n"
-                     "    return stop;\n"
-                     "}\n"
-                     "vec4 finish(State state) { return vec4(taken, needed, 0.0, 1.0); }\n")}};
-}
-
 struct Count {
     double taken = 0.0;
     double needed = 0.0;  ///< by an oracle that knows which slabs change the picture
@@ -192,7 +176,7 @@ struct Count {
 /// The generated head where it has been made, else a plainer one.
 Count count_slabs(const nlohmann::json& points, bool skip) {
     const std::filesystem::path file = std::filesystem::path(VISCERA_SOURCE_DIR) / "assets/volumes/head.mha";
-    VolumeStage stage(counting());
+    VolumeStage stage(slab_counting());
     Log log;
     const LiveVolume volume(std::filesystem::exists(file) ? io::load_volume(file, {}, log)
                                                           : head_volume(160, 240.0));

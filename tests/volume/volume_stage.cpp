@@ -48,6 +48,21 @@ ShaderReader with_texts(ShaderTexts texts) {
     };
 }
 
+ShaderTexts slab_counting() {
+    constexpr std::array<std::string_view, 2> functions{"take_slab", "finish"};
+    return {{"volume/function_composite.glsl",
+             wrapped("volume/function_composite.glsl", functions,
+                     "float taken = 0.0;\nfloat needed = 0.0;\n"
+                     "bool take_slab(inout State state, Slab slab) {\n"
+                     "    float depth = state.depth;\n"
+                     "    bool stop = plain_take_slab(state, slab);\n"
+                     "    taken += 1.0;\n"
+                     "    needed += state.depth > depth ? 1.0 : 0.0;\n"
+                     "    return stop;\n"
+                     "}\n"
+                     "vec4 finish(State state) { return vec4(taken, needed, 0.0, 1.0); }\n")}};
+}
+
 std::string glsl(double value) {
     std::ostringstream text;
     text.precision(9);

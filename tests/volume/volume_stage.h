@@ -32,6 +32,8 @@ using ShaderTexts = std::map<std::string, std::string, std::less<>>;
 /// them anew.
 [[nodiscard]] std::string wrapped(std::string_view name, std::span<const std::string_view> functions,
                                   std::string_view text);
+/// Composition that shows how many slabs were taken (red) and how many of those changed the picture (green).
+[[nodiscard]] ShaderTexts slab_counting();
 /// A number as GLSL reads it.
 [[nodiscard]] std::string glsl(double value);
 [[nodiscard]] std::string glsl(const glm::dvec3& value);
