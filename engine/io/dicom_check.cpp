@@ -1,10 +1,13 @@
 #include "engine/io/dicom_check.h"
 
+#include <zlib.h>
+
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <charconv>
 #include <cstdint>
-#include <cstring>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -45,11 +48,68 @@ constexpr std::array<Layout, 30> layout{
      {0x00281052U, "DS"}, {0x00281053U, "DS"}, {0x00281101U, "US", false}, {0x00282110U, "CS"},
      {0x3004000cU, "DS"}, {0x52009229U, "SQ"}}};
 
+[[noreturn]] void fail(const std::string& message) {
+    throw std::runtime_error(message);
+}
+
+/// A number of the file's byte order.
+template <class T>
+T in_order(const char* bytes, std::endian order) {
+    std::array<char, sizeof(T)> turned{};
+    std::copy_n(bytes, sizeof(T), turned.begin());
+    if (order != std::endian::native) {
+        std::ranges::reverse(turned);
+    }
+    return std::bit_cast<T>(turned);
+}
+
+/// What a stream of raw deflate holds. A few packed bytes may ask for a thousand times as many.
+std::string inflated(std::string_view packed, std::uint64_t most_bytes) {
+    struct Stream : z_stream {
+        Stream() : z_stream{} {
+            if (inflateInit2(this, -MAX_WBITS) != Z_OK) {
+                throw std::runtime_error("zlib does not start");
+            }
+        }
+        Stream(const Stream&) = delete;
+        Stream& operator=(const Stream&) = delete;
+        ~Stream() { inflateEnd(this); }
+    } stream;
+    constexpr std::size_t step = std::numeric_limits<uInt>::max();
+    std::string bytes;
+    std::size_t done = 0;
+    for (int status = Z_OK; status != Z_STREAM_END;) {
+        if (done == bytes.size()) {
+            if (done >= most_bytes) {
+                throw std::length_error("unpacks to more than the " + std::to_string(most_bytes >> 20U) +
+                                        " MiB of memory that there are");
+            }
+            bytes.resize(std::min<std::uint64_t>(most_bytes, 2 * (done + packed.size())));
+        }
+        // zlib counts in 32 bits and reads through a pointer that is not const.
+        stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data()));
+        stream.avail_in = static_cast<uInt>(std::min(packed.size(), step));
+        stream.next_out = reinterpret_cast<Bytef*>(bytes.data() + done);
+        stream.avail_out = static_cast<uInt>(std::min(bytes.size() - done, step));
+        const uInt taken = stream.avail_in;
+        const uInt room = stream.avail_out;
+        status = inflate(&stream, Z_NO_FLUSH);
+        packed.remove_prefix(taken - stream.avail_in);
+        done += room - stream.avail_out;
+        if (status != Z_OK && status != Z_STREAM_END) {
+            fail(status == Z_BUF_ERROR ? "is truncated: its deflated elements end too early"
+                                       : "its deflated elements are damaged");
+        }
+    }
+    bytes.resize(done);
+    return bytes;
+}
+
 class Walk {
   public:
     explicit Walk(std::string_view bytes) : rest_(bytes) {}
 
-    void file() {
+    void file(std::uint64_t most_bytes) {
         constexpr std::size_t preamble = 132;
         if (rest_.size() < preamble || rest_.substr(128, 4) != "DICM") {
             fail("has no DICOM preamble");
@@ -57,12 +117,18 @@ class Walk {
         rest_.remove_prefix(preamble);
         meta();
         set_syntax();
+        std::string unpacked;
+        if (syntax_ == "1.2.840.10008.1.2.1.99") {
+            unpacked = inflated(rest_, most_bytes);
+            rest_ = unpacked;
+        }
+        if (rest_.size() < 8 || peek_group() <= 2) {
+            fail("its file meta information does not end where it should");
+        }
         elements(rest_, 0);
     }
 
   private:
-    [[noreturn]] static void fail(const std::string& message) { throw std::runtime_error(message); }
-
     /// The group that tells how the others are stored; its first element is its length.
     void meta() {
         const Element first = next();
@@ -85,32 +151,24 @@ class Walk {
                     value.substr(0, std::min(value.find_first_of(std::string_view("\0 ", 2)), value.size()));
             }
         }
-        if (rest_.size() < 8 || peek_group() <= 2) {
-            fail("its file meta information does not end where it should");
-        }
     }
 
     void set_syntax() {
-        if (syntax_ == "1.2.840.10008.1.2.2") {
-            fail("is stored big-endian, which is not read");
-        }
-        if (syntax_ == "1.2.840.10008.1.2.1.99") {
-            fail("is deflated as a whole, which is not read");
-        }
         if (!syntax_.starts_with("1.2.840.10008.1.2")) {
             fail("TransferSyntaxUID is missing or unknown");
         }
         explicit_ = syntax_ != "1.2.840.10008.1.2";
+        if (syntax_ == "1.2.840.10008.1.2.2") {
+            order_ = std::endian::big;
+        }
     }
 
     template <class T>
     [[nodiscard]] T number(std::size_t at) const {
-        T value{};
-        if (rest_.size() < at + sizeof value) {
+        if (rest_.size() < at + sizeof(T)) {
             fail("is truncated within an element");
         }
-        std::memcpy(&value, rest_.data() + at, sizeof value);
-        return value;
+        return in_order<T>(rest_.data() + at, order_);
     }
     [[nodiscard]] std::uint32_t peek_group() const { return number<std::uint16_t>(0); }
 
@@ -180,10 +238,8 @@ class Walk {
         }
     }
 
-    [[nodiscard]] static std::uint16_t word(std::string_view value) {
-        std::uint16_t number = 0;
-        std::memcpy(&number, value.data(), std::min(value.size(), sizeof number));
-        return number;
+    [[nodiscard]] std::uint16_t word(std::string_view value) const {
+        return value.size() < 2 ? std::uint16_t{0} : in_order<std::uint16_t>(value.data(), order_);
     }
 
     void note_size(const Element& element, std::string_view value) {
@@ -296,7 +352,8 @@ class Walk {
     std::string_view rest_;
     std::string_view syntax_;
     bool explicit_ = true;
-    std::uint64_t pixels_ = 1;  ///< of one frame
+    std::endian order_ = std::endian::little;  ///< the file meta information always is
+    std::uint64_t pixels_ = 1;                 ///< of one frame
     std::uint64_t samples_ = 1;
     std::uint64_t bits_ = 0;  ///< of a sample
     unsigned int frames_ = 1;
@@ -304,8 +361,8 @@ class Walk {
 
 }  // namespace
 
-void check_dicom(std::string_view bytes) {
-    Walk(bytes).file();
+void check_dicom(std::string_view bytes, std::uint64_t most_bytes) {
+    Walk(bytes).file(most_bytes);
 }
 
 }  // namespace viscera::io

@@ -2,10 +2,12 @@
 
 #include <tiffio.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdarg>
 #include <cstdio>
 #include <memory>
+#include <span>
 #include <string>
 
 #include "engine/core/error.h"
@@ -54,20 +56,20 @@ class Reader {
         picture.bits = field<std::uint16_t>(TIFFTAG_BITSPERSAMPLE);
         picture.channels = field<std::uint16_t>(TIFFTAG_SAMPLESPERPIXEL);
         check(picture);
-        const auto row = static_cast<std::size_t>(picture.width) *
-                         static_cast<std::size_t>(picture.channels) *
-                         static_cast<std::size_t>(picture.bits / 8);
-        const auto rows = static_cast<std::size_t>(picture.height);
-        constexpr std::size_t best_compression = 4096;
-        if (row * rows / best_compression > std::filesystem::file_size(file_) ||
-            static_cast<std::size_t>(TIFFScanlineSize64(tiff_.get())) != row) {
-            fail("lies about its size");
-        }
-        picture.bytes.resize(row * rows);
-        for (std::size_t y = 0; y < rows; ++y) {
-            if (TIFFReadScanline(tiff_.get(), picture.bytes.data() + y * row, static_cast<std::uint32_t>(y)) <
-                0) {
-                fail("is damaged");
+        const bool apart =
+            picture.channels > 1 && field<std::uint16_t>(TIFFTAG_PLANARCONFIG) == PLANARCONFIG_SEPARATE;
+        const int planes = apart ? picture.channels : 1;
+        pixel_ = static_cast<std::size_t>(picture.channels) * static_cast<std::size_t>(picture.bits / 8);
+        piece_ = pixel_ / static_cast<std::size_t>(planes);
+        const Part all{0, 0, static_cast<std::size_t>(picture.width),
+                       static_cast<std::size_t>(picture.height)};
+        expect_packed(all.width * all.height * pixel_);
+        picture.bytes.resize(all.width * all.height * pixel_);
+        for (int plane = 0; plane < planes; ++plane) {
+            if (TIFFIsTiled(tiff_.get()) != 0) {
+                read_tiles(picture, all, plane);
+            } else {
+                read_rows(picture, all, plane);
             }
         }
         if (field<std::uint16_t>(TIFFTAG_PHOTOMETRIC) == PHOTOMETRIC_MINISWHITE) {
@@ -86,6 +88,77 @@ class Reader {
         return value;
     }
 
+    /// A rectangle of the picture [pixels].
+    struct Part {
+        std::size_t x = 0;
+        std::size_t y = 0;
+        std::size_t width = 0;
+        std::size_t height = 0;
+    };
+
+    /// No compression makes less of them.
+    void expect_packed(std::size_t bytes) const {
+        constexpr std::size_t best_compression = 4096;
+        if (bytes / best_compression > std::filesystem::file_size(file_)) {
+            fail("lies about its size");
+        }
+    }
+
+    void read_rows(TiffPicture& picture, const Part& all, int plane) const {
+        std::vector<std::byte> row(all.width * piece_);
+        if (TIFFScanlineSize64(tiff_.get()) != row.size()) {
+            fail("lies about its size");
+        }
+        for (std::size_t y = 0; y < all.height; ++y) {
+            if (TIFFReadScanline(tiff_.get(), row.data(), static_cast<std::uint32_t>(y),
+                                 static_cast<std::uint16_t>(plane)) < 0) {
+                fail("is damaged");
+            }
+            put(picture, {0, y, all.width, 1}, plane, row, all.width);
+        }
+    }
+
+    /// Tiles are all of one size and go on beyond the right and the lower edge.
+    void read_tiles(TiffPicture& picture, const Part& all, int plane) const {
+        const std::size_t width = field<std::uint32_t>(TIFFTAG_TILEWIDTH);
+        const std::size_t height = field<std::uint32_t>(TIFFTAG_TILELENGTH);
+        constexpr std::size_t most_side = std::size_t{1} << 20U;
+        if (width < 1 || height < 1 || width > most_side || height > most_side ||
+            TIFFTileSize64(tiff_.get()) != width * height * piece_) {
+            fail("lies about the size of its tiles");
+        }
+        expect_packed(width * height * piece_);
+        std::vector<std::byte> tile(width * height * piece_);
+        for (std::size_t y = 0; y < all.height; y += height) {
+            for (std::size_t x = 0; x < all.width; x += width) {
+                if (TIFFReadTile(tiff_.get(), tile.data(), static_cast<std::uint32_t>(x),
+                                 static_cast<std::uint32_t>(y), 0, static_cast<std::uint16_t>(plane)) < 0) {
+                    fail("is damaged");
+                }
+                put(picture, {x, y, std::min(width, all.width - x), std::min(height, all.height - y)}, plane,
+                    tile, width);
+            }
+        }
+    }
+
+    /// `stride`: pixels from row to row of what was read.
+    void put(TiffPicture& picture, const Part& part, int plane, std::span<const std::byte> from,
+             std::size_t stride) const {
+        for (std::size_t y = 0; y < part.height; ++y) {
+            const std::byte* pixel = from.data() + y * stride * piece_;
+            std::byte* to = picture.bytes.data() +
+                            ((part.y + y) * static_cast<std::size_t>(picture.width) + part.x) * pixel_ +
+                            static_cast<std::size_t>(plane) * piece_;
+            if (piece_ == pixel_) {
+                std::copy_n(pixel, part.width * pixel_, to);
+                continue;
+            }
+            for (std::size_t x = 0; x < part.width; ++x) {
+                std::copy_n(pixel + x * piece_, piece_, to + x * pixel_);
+            }
+        }
+    }
+
     void check(const TiffPicture& picture) const {
         if (picture.width < 1 || picture.height < 1) {
             fail("has no pixels");
@@ -93,12 +166,6 @@ class Reader {
         if ((picture.bits != 8 && picture.bits != 16) || picture.channels < 1 || picture.channels > 4 ||
             field<std::uint16_t>(TIFFTAG_SAMPLEFORMAT) != SAMPLEFORMAT_UINT) {
             fail("has pixels that are not read: 1 to 4 unsigned channels of 8 or 16 bits are");
-        }
-        if (TIFFIsTiled(tiff_.get()) != 0) {
-            fail("is stored in tiles; only strips are read");
-        }
-        if (picture.channels > 1 && field<std::uint16_t>(TIFFTAG_PLANARCONFIG) != PLANARCONFIG_CONTIG) {
-            fail("has its channels apart; only interleaved ones are read");
         }
         if (field<std::uint16_t>(TIFFTAG_PHOTOMETRIC) == PHOTOMETRIC_PALETTE) {
             fail("has a palette, which is not read");
@@ -111,6 +178,8 @@ class Reader {
 
     std::filesystem::path file_;
     std::string message_;
+    std::size_t pixel_ = 1;  ///< bytes of all channels of a pixel
+    std::size_t piece_ = 1;  ///< of those that lie beside each other in the file
     std::unique_ptr<TIFF, Close> tiff_;
 };
 

@@ -15,7 +15,8 @@ struct TiffPicture {
     std::vector<std::byte> bytes;
 };
 
-/// Throws Error(file) for a missing or damaged file, tiles, palettes, and other sample formats.
+/// Rows or tiles, channels beside each other or apart. Throws Error(file) for a missing or damaged file,
+/// palettes, and other sample formats.
 [[nodiscard]] TiffPicture read_tiff(const std::filesystem::path& file);
 
 }  // namespace viscera::io

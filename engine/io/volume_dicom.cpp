@@ -9,6 +9,7 @@
 #include <numeric>
 #include <optional>
 
+#include "engine/core/error.h"
 #include "engine/io/dicom_check.h"
 #include "engine/io/file_bytes.h"
 #include "engine/io/volume_itk.h"
@@ -95,8 +96,17 @@ void check_orientation(std::string text) {
     }
 }
 
-Slice describe_slice(const std::filesystem::path& file) {
-    check_dicom(read_file(file));
+void check(const std::filesystem::path& file, const Reading& reading) {
+    try {
+        check_dicom(read_file(file), memory_of(reading));
+    } catch (const std::length_error& error) {
+        throw Error(ErrorCode::limit, reading.file.string(),
+                    "'" + file.filename().string() + "' " + error.what());
+    }
+}
+
+Slice describe_slice(const std::filesystem::path& file, const Reading& reading) {
+    check(file, reading);
     const ImageIo::Pointer io = open(file);
     Slice slice{.file = file, .series = tag(*io, "0020|000e"), .modality = tag(*io, "0008|0060")};
     const std::optional<FileScalar> type = scalar_of(io->GetInternalComponentType());
@@ -292,7 +302,7 @@ std::vector<Slice> find_slices(const Reading& reading) {
     std::string series = reading.options.series;
     if (!is_folder) {
         static_cast<void>(size_of(reading.file, reading));
-        Slice one = describe_slice(reading.file);
+        Slice one = describe_slice(reading.file, reading);
         if (one.dims.z > 1 || one.series.empty()) {
             return {std::move(one)};
         }
@@ -303,7 +313,7 @@ std::vector<Slice> find_slices(const Reading& reading) {
     std::string reason = "holds no DICOM images";
     for (const std::filesystem::path& file : files_of(folder)) {
         try {
-            slices.push_back(describe_slice(file));
+            slices.push_back(describe_slice(file, reading));
         } catch (const std::exception& error) {
             const std::string text =
                 "'" + file.filename().string() + "' is no DICOM image that can be read: " + words_of(error);

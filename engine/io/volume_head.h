@@ -72,6 +72,9 @@ struct Payload {
 /// allocates when memory does not suffice.
 [[nodiscard]] Volume read_voxels(VolumeHead head, const ReadBytes& read, const Reading& reading);
 
+/// Bytes of memory that reading may take: the option, or what the machine has available now.
+[[nodiscard]] std::uint64_t memory_of(const Reading& reading);
+
 /// Throws Error(limit) when a volume of this head does not fit into memory, reduced as the options say;
 /// `beside` are bytes that reading takes on top of it.
 void require_memory(const VolumeHead& head, std::uint64_t beside, const Reading& reading);

@@ -242,9 +242,13 @@ std::uint64_t VolumeHead::bytes(const Reading& reading) const {
     return volume.grid.voxel_count() * voxel_bytes();
 }
 
-void require_memory(const VolumeHead& head, std::uint64_t beside, const Reading& reading) {
+std::uint64_t memory_of(const Reading& reading) {
     const std::uint64_t limit = reading.options.memory_limit;
-    const std::uint64_t available = limit > 0 ? limit : available_memory();
+    return limit > 0 ? limit : available_memory();
+}
+
+void require_memory(const VolumeHead& head, std::uint64_t beside, const Reading& reading) {
+    const std::uint64_t available = memory_of(reading);
     const int factor = std::max(1, reading.options.reduce);
     const std::uint64_t needed = kept_bytes(head, factor) + working_bytes(head, factor) + beside;
     if (needed <= available) {

@@ -167,8 +167,9 @@ void run_shader(std::string_view bytes) {
 
 /// The first byte chooses the format; the rest is the file.
 void run_volume(std::string_view bytes) {
-    static constexpr std::array names{"fuzz.mha", "fuzz.nrrd", "fuzz.nii",  "fuzz.nii.gz", "fuzz.vtk",
-                                      "fuzz.vti", "fuzz.csv",  "fuzz.json", "fuzz.plist",  "fuzz.dcm"};
+    static constexpr std::array names{"fuzz.mha",   "fuzz.nrrd", "fuzz.nii", "fuzz.nii.gz",
+                                      "fuzz.vtk",   "fuzz.vti",  "fuzz.csv", "fuzz.json",
+                                      "fuzz.plist", "fuzz.dcm",  "fuzz.dcm", "fuzz.dcm"};
     if (bytes.empty()) {
         return;
     }
@@ -281,7 +282,9 @@ std::vector<std::string> volume_seeds() {
                            std::string(R"({"file":"none.raw","dims":[4,3,2],"type":"i16","axes":"RAS"})"),
                            std::string("<plist><dict><key>matrix</key><dict><key>dtype</key><string>int16</"
                                        "string></dict></dict></plist>"),
-                           test::dicom({})};
+                           test::dicom({}),
+                           test::dicom({.coding = test::DicomCoding::big}),
+                           test::dicom({.coding = test::DicomCoding::deflated})};
     std::vector<std::string> seeds;
     for (std::size_t i = 0; i < files.size(); ++i) {
         seeds.push_back(static_cast<char>(i) + files.at(i));

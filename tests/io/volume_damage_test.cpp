@@ -48,7 +48,9 @@ std::vector<Sample> samples() {
          "<string>int16</string><key>filename</key><string>beside.raw</string><key>shape</key><array>"
          "<integer>2</integer><integer>3</integer><integer>4</integer></array></dict><key>spacing</key>"
          "<array><real>1</real><real>1</real><real>2</real></array></dict></plist>"},
-        {"a.dcm", test::dicom({})}};
+        {"a.dcm", test::dicom({})},
+        {"big.dcm", test::dicom({.coding = test::DicomCoding::big})},
+        {"deflated.dcm", test::dicom({.coding = test::DicomCoding::deflated})}};
 }
 
 class VolumeDamage : public testing::TestWithParam<std::size_t> {

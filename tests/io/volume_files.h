@@ -2,6 +2,7 @@
 
 #include <zlib.h>
 
+#include <algorithm>
 #include <cstring>
 #include <string>
 #include <vector>
@@ -11,7 +12,7 @@
 
 namespace viscera::test {
 
-/// Packed with zlib (window bits 15) or gzip (31).
+/// Packed with zlib (window bits 15), gzip (31) or without either's header (-15).
 inline std::string deflated(std::string_view bytes, int window_bits) {
     z_stream stream{};
     deflateInit2(&stream, Z_DEFAULT_COMPRESSION, Z_DEFLATED, window_bits, 8, Z_DEFAULT_STRATEGY);
@@ -135,17 +136,43 @@ inline std::string csv() {
     return text;
 }
 
-/// One element of an explicit little-endian DICOM file.
+/// The bytes of each number of `width` bytes turned over.
+inline std::string turned(std::string bytes, std::size_t width) {
+    for (std::size_t at = 0; at + width <= bytes.size(); at += width) {
+        std::reverse(bytes.begin() + static_cast<std::ptrdiff_t>(at),
+                     bytes.begin() + static_cast<std::ptrdiff_t>(at + width));
+    }
+    return bytes;
+}
+
+enum class DicomCoding { little, big, deflated };
+
+/// One element of a DICOM file with explicit types; `value` in little-endian order.
 inline std::string dicom_element(std::uint16_t group, std::uint16_t element, std::string_view type,
-                                 std::string value) {
+                                 std::string value, DicomCoding coding = DicomCoding::little) {
     if (value.size() % 2 == 1) {
-        value += type == "UI" || type == "OW" ? '\0' : ' ';
+        value += type == "UI" || type == "OW" || type == "OB" ? '\0' : ' ';
     }
-    const std::string tag = bytes_of(group) + bytes_of(element) + std::string(type);
-    if (type == "OW" || type == "OB") {
-        return tag + std::string(2, '\0') + bytes_of(static_cast<std::uint32_t>(value.size())) + value;
+    const auto in_order = [&](auto number) {
+        const std::string bytes = bytes_of(number);
+        return coding == DicomCoding::big ? turned(bytes, bytes.size()) : bytes;
+    };
+    if (coding == DicomCoding::big) {
+        value = turned(value, type == "US" || type == "OW" ? 2 : type == "UL" ? 4 : 1);
     }
-    return tag + bytes_of(static_cast<std::uint16_t>(value.size())) + value;
+    const std::string tag = in_order(group) + in_order(element) + std::string(type);
+    if (type == "OW" || type == "OB" || type == "SQ") {
+        return tag + std::string(2, '\0') + in_order(static_cast<std::uint32_t>(value.size())) + value;
+    }
+    return tag + in_order(static_cast<std::uint16_t>(value.size())) + value;
+}
+
+/// The value of a sequence with one item.
+inline std::string dicom_item(const std::string& elements, DicomCoding coding) {
+    const auto words = bytes_of(std::vector<std::uint16_t>{0xfffe, 0xe000});
+    const auto size = bytes_of(static_cast<std::uint32_t>(elements.size()));
+    return coding == DicomCoding::big ? turned(words, 2) + turned(size, 4) + elements
+                                      : words + size + elements;
 }
 
 struct DicomSlice {
@@ -156,31 +183,45 @@ struct DicomSlice {
     std::string intercept = "-1024";
     int instance = 1;
     std::vector<std::uint16_t> pixels = ramp<std::uint16_t>(12);  ///< 4 x 3
+    DicomCoding coding = DicomCoding::little;
+    std::string_view pixel_type = "OW";
+    bool bytes = false;  ///< the pixels as 8 bits
+    bool is_signed = false;
 };
 
 inline std::string dicom(const DicomSlice& slice) {
-    const auto us = [](std::uint16_t group, std::uint16_t element, std::uint16_t value) {
-        return dicom_element(group, element, "US", bytes_of(value));
+    const auto put = [&](std::uint16_t group, std::uint16_t element, std::string_view type,
+                         const std::string& value) {
+        return dicom_element(group, element, type, value, slice.coding);
+    };
+    const auto us = [&](std::uint16_t group, std::uint16_t element, std::uint16_t value) {
+        return put(group, element, "US", bytes_of(value));
     };
     const std::string sop = "1.2.840.10008.5.1.4.1.1.2";
     const std::string instance = "1.2.3.5." + std::to_string(slice.instance);
+    const std::string syntax = slice.coding == DicomCoding::little ? "1.2.840.10008.1.2.1"
+                               : slice.coding == DicomCoding::big  ? "1.2.840.10008.1.2.2"
+                                                                   : "1.2.840.10008.1.2.1.99";
     const std::string meta = dicom_element(2, 1, "OB", std::string("\0\1", 2)) +
                              dicom_element(2, 2, "UI", sop) + dicom_element(2, 3, "UI", instance) +
-                             dicom_element(2, 0x10, "UI", "1.2.840.10008.1.2.1") +
-                             dicom_element(2, 0x12, "UI", "1.2.3");
+                             dicom_element(2, 0x10, "UI", syntax) + dicom_element(2, 0x12, "UI", "1.2.3");
+    const std::uint16_t bits = slice.bytes ? 8 : slice.is_signed ? 16 : 12;
+    const std::string elements =
+        put(8, 0x16, "UI", sop) + put(8, 0x18, "UI", instance) + put(8, 0x60, "CS", "CT") +
+        put(8, 0x1140, "SQ", dicom_item(put(8, 0x1150, "UI", sop) + us(8, 0x9999, 7), slice.coding)) +
+        put(0x18, 0x50, "DS", "2") + put(0x20, 0xd, "UI", "1.2.3") + put(0x20, 0xe, "UI", slice.series) +
+        put(0x20, 0x13, "IS", std::to_string(slice.instance)) + put(0x20, 0x32, "DS", slice.position) +
+        put(0x20, 0x37, "DS", slice.orientation) + us(0x28, 2, 1) + put(0x28, 4, "CS", "MONOCHROME2") +
+        us(0x28, 0x10, 3) + us(0x28, 0x11, 4) + put(0x28, 0x30, "DS", R"(0.75\0.5)") +
+        us(0x28, 0x100, slice.bytes ? 8 : 16) + us(0x28, 0x101, bits) +
+        us(0x28, 0x102, static_cast<std::uint16_t>(bits - 1)) + us(0x28, 0x103, slice.is_signed ? 1 : 0) +
+        put(0x28, 0x1052, "DS", slice.intercept) + put(0x28, 0x1053, "DS", slice.slope) +
+        put(0x7fe0, 0x10, slice.pixel_type,
+            slice.bytes ? bytes_of(std::vector<std::uint8_t>(slice.pixels.begin(), slice.pixels.end()))
+                        : bytes_of(slice.pixels));
     return std::string(128, '\0') + "DICM" +
            dicom_element(2, 0, "UL", bytes_of(static_cast<std::uint32_t>(meta.size()))) + meta +
-           dicom_element(8, 0x16, "UI", sop) + dicom_element(8, 0x18, "UI", instance) +
-           dicom_element(8, 0x60, "CS", "CT") + dicom_element(0x18, 0x50, "DS", "2") +
-           dicom_element(0x20, 0xd, "UI", "1.2.3") + dicom_element(0x20, 0xe, "UI", slice.series) +
-           dicom_element(0x20, 0x13, "IS", std::to_string(slice.instance)) +
-           dicom_element(0x20, 0x32, "DS", slice.position) +
-           dicom_element(0x20, 0x37, "DS", slice.orientation) + us(0x28, 2, 1) +
-           dicom_element(0x28, 4, "CS", "MONOCHROME2") + us(0x28, 0x10, 3) + us(0x28, 0x11, 4) +
-           dicom_element(0x28, 0x30, "DS", R"(0.75\0.5)") + us(0x28, 0x100, 16) + us(0x28, 0x101, 12) +
-           us(0x28, 0x102, 11) + us(0x28, 0x103, 0) + dicom_element(0x28, 0x1052, "DS", slice.intercept) +
-           dicom_element(0x28, 0x1053, "DS", slice.slope) +
-           dicom_element(0x7fe0, 0x10, "OW", bytes_of(slice.pixels));
+           (slice.coding == DicomCoding::deflated ? deflated(elements, -15) : elements);
 }
 
 }  // namespace viscera::test

@@ -1,7 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <tiffio.h>
-
 #include "engine/core/error.h"
 #include "engine/io/volume.h"
 #include "tests/io/temp_folder.h"
@@ -152,29 +150,76 @@ TEST_F(VolumeHeader, DicomSlicesWithRescalesOfTheirOwnAreRescaled) {
     EXPECT_EQ(volume.value_of(volume.stored({3, 2, 1})), 3.75);
 }
 
-TEST_F(VolumeHeader, TiffSlices) {
-    for (const int bits : {8, 16}) {
-        const TempFolder folder;
-        for (const char* name : {"a1.tif", "a2.tif"}) {
-            TIFF* tiff = TIFFOpen((folder / name).c_str(), "w");
-            TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, 4);
-            TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, 3);
-            TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, bits);
-            TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, 1);
-            TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, 2);
-            TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
-            TIFFSetField(tiff, TIFFTAG_COMPRESSION, COMPRESSION_LZW);
-            for (std::uint32_t y = 0; y < 3; ++y) {
-                std::vector<std::uint8_t> row8{static_cast<std::uint8_t>(y), 1, 2, 3};
-                std::vector<std::uint16_t> row16{static_cast<std::uint16_t>(1000 * y), 1, 2, 3};
-                TIFFWriteScanline(tiff, bits == 8 ? static_cast<void*>(row8.data()) : row16.data(), y);
+TEST_F(VolumeHeader, DicomInEitherByteOrderAndDeflatedIsOneVolume) {
+    const std::vector<std::uint16_t> wide{0,      1,      255,    256,    4095,   0x7fff,
+                                          0x8000, 0x8001, 0xff00, 0xfffe, 0xffff, 2};
+    const std::vector<std::uint16_t> narrow{0, 1, 2, 3, 127, 128, 129, 200, 250, 251, 254, 255};
+    struct Kind {
+        const char* name;
+        bool bytes;
+        bool is_signed;
+        std::string_view pixel_type;
+    };
+    for (const Kind& kind : {Kind{"u16", false, false, "OW"}, Kind{"i16", false, true, "OW"},
+                             Kind{"u8 in words", true, false, "OW"}, Kind{"u8", true, false, "OB"}}) {
+        for (const auto coding :
+             {test::DicomCoding::little, test::DicomCoding::big, test::DicomCoding::deflated}) {
+            SCOPED_TRACE(std::string(kind.name) + " " + std::to_string(static_cast<int>(coding)));
+            test::DicomSlice slice{.pixels = kind.bytes ? narrow : wide,
+                                   .coding = coding,
+                                   .pixel_type = kind.pixel_type,
+                                   .bytes = kind.bytes,
+                                   .is_signed = kind.is_signed};
+            if (!kind.bytes && !kind.is_signed) {
+                std::ranges::for_each(slice.pixels, [](std::uint16_t& value) { value &= 0xfff; });
             }
-            TIFFClose(tiff);
+            const Volume volume = load("one.dcm", test::dicom(slice));
+            EXPECT_EQ(volume.type, kind.bytes       ? ScalarType::u8
+                                   : kind.is_signed ? ScalarType::i16
+                                                    : ScalarType::u16);
+            EXPECT_EQ(volume.intercept, -1024.0);
+            expect_near(volume.grid.origin_mm, {10, 20, 30});
+            expect_near(volume.grid.spacing_mm, {0.5, 0.75, 1.0});
+            for (int i = 0; i < 12; ++i) {
+                const std::uint16_t due = slice.pixels.at(static_cast<std::size_t>(i));
+                EXPECT_EQ(volume.stored({i % 4, i / 4, 0}),
+                          kind.is_signed ? static_cast<double>(static_cast<std::int16_t>(due)) : due)
+                    << i;
+            }
         }
-        const Volume volume = load_volume(folder.path(), {}, log_);
-        EXPECT_EQ(volume.grid.dims, glm::ivec3(4, 3, 2));
-        EXPECT_EQ(volume.type, bits == 8 ? ScalarType::u8 : ScalarType::u16);
-        EXPECT_EQ(volume.stored({0, 2, 1}), bits == 8 ? 2.0 : 2000.0);
+    }
+    EXPECT_TRUE(log_.faults().empty());
+}
+
+TEST_F(VolumeHeader, SeriesMayMixDicomCodings) {
+    for (int i = 0; i < 3; ++i) {
+        test::DicomSlice slice{.position = R"(10\20\)" + std::to_string(30 + 2 * i),
+                               .instance = i,
+                               .coding = static_cast<test::DicomCoding>(i)};
+        slice.pixels[0] = static_cast<std::uint16_t>(0x301 * (i + 1));
+        put("s" + std::to_string(i), test::dicom(slice));
+    }
+    const Volume volume = load_folder();
+    ASSERT_EQ(volume.grid.dims, glm::ivec3(4, 3, 3));
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_EQ(volume.stored({0, 0, i}), 0x301 * (i + 1));
+        EXPECT_EQ(volume.stored({3, 2, i}), 11.0);
+    }
+}
+
+/// A few bytes that unpack to many times the memory that may be taken.
+TEST_F(VolumeHeader, DeflatedDicomIsUnpackedWithinMemory) {
+    std::string bytes = test::dicom({.coding = test::DicomCoding::deflated});
+    const std::size_t packed = test::dicom({}).find(std::string("\x08\0\x16\0", 4));
+    bytes.resize(packed + 2);
+    bytes += test::deflated(std::string(std::size_t{8} << 20U, '\0'), -15);
+    try {
+        static_cast<void>(
+            load_volume(folder_.write("a.dcm", bytes), {.memory_limit = std::uint64_t{1} << 20U}, log_));
+        FAIL() << "is taken";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ErrorCode::limit);
+        EXPECT_NE(error.message().find("1 MiB"), std::string_view::npos) << error.what();
     }
 }
 
