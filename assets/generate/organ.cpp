@@ -12,7 +12,6 @@
 namespace viscera::assets {
 namespace {
 
-constexpr double organ_spacing_mm = 5.0;
 constexpr int abdomen_cells = 72;
 constexpr int organ_pixels = 1024;
 constexpr int abdomen_pixels = 512;

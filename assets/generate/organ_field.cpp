@@ -13,7 +13,7 @@ namespace {
 // The gallbladder from its fundus, which hangs out under the liver's edge, to the neck and along the duct.
 constexpr glm::vec3 fundus{-40.0F, 4.0F, -38.0F};
 constexpr glm::vec3 body{-33.0F, 11.0F, -12.0F};
-constexpr glm::vec3 neck{-18.0F, 25.0F, 10.0F};
+constexpr glm::vec3 neck{-16.0F, 29.0F, 4.0F};
 constexpr glm::vec3 duct{4.0F, 44.0F, 14.0F};
 
 float noise(const glm::vec3& p, double feature_mm, std::uint32_t seed) {
@@ -30,8 +30,8 @@ float OrganField::liver(const glm::vec3& p) const {
     float d = join(right, left, 34.0F);
     // The lower side is hollow, which leaves a sharp edge in front.
     d = carve(d, ellipsoid(p, {-4.0F, 66.0F, -34.0F}, {150.0F, 66.0F, 76.0F}), 10.0F);
-    // Notch and fissure of the round ligament between the lobes.
-    d = carve(d, rod(p, {17.0F, -44.0F, -24.0F}, {20.0F, 2.0F, 20.0F}, 5.0F, 3.0F), 12.0F);
+    // The fissure of the round ligament between the lobes: open in front down to the edge.
+    d = carve(d, rod(p, {17.0F, -44.0F, 4.0F}, {18.0F, 2.0F, -18.0F}, 3.0F, 7.0F), 12.0F);
     // The bed.
     d = carve(d, rod(p, fundus, neck, 12.0F, 3.0F), 5.0F);
     // A shallow hollow on the front, as a wedge biopsy leaves it: blood stands in it.
@@ -57,7 +57,8 @@ float OrganField::fat(const glm::vec3& p) const {
 
 double OrganField::distance(const glm::dvec3& at) const {
     const glm::vec3 p(at);
-    return join(join(liver(p), gallbladder(p), 7.0F), fat(p), 6.0F);
+    // The wide joint fills the wedge where the neck leaves the liver: no grid would hold its tip.
+    return join(join(liver(p), gallbladder(p), 12.0F), fat(p), 6.0F);
 }
 
 glm::dvec3 OrganField::normal(const glm::dvec3& p) const {

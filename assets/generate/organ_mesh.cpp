@@ -1,5 +1,6 @@
 #include "assets/generate/organ_mesh.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -14,6 +15,9 @@
 
 namespace viscera::assets {
 namespace {
+
+// An edge of a right angle within a triangle leaves 0.7; two sheets that a grid mixes up leave less than 0.
+constexpr double smallest_agreement = 0.25;
 
 /// Blocks of the grid that hold the body or lie near it.
 std::vector<glm::ivec3> blocks_of(const OrganField& field, double spacing) {
@@ -84,12 +88,26 @@ void add_atlas(MeshData& mesh) {
 
 }  // namespace
 
+double least_agreement(const MeshData& mesh) {
+    double least = 1.0;
+    for (std::size_t t = 0; t < mesh.indices.size(); t += 3) {
+        const auto corner = [&](std::size_t k) { return glm::dvec3(mesh.positions[mesh.indices[t + k]]); };
+        const glm::dvec3 across = glm::cross(corner(1) - corner(0), corner(2) - corner(0));
+        const double length = glm::length(across);
+        for (std::size_t k = 0; length > 0.0 && k < 3; ++k) {
+            least = std::min(least, glm::dot(across, glm::dvec3(mesh.normals[mesh.indices[t + k]])) / length);
+        }
+    }
+    return least;
+}
+
 MeshData mesh_organ(const OrganField& field, double spacing_mm) {
     for (int attempt = 0; attempt < 5; ++attempt) {
         MeshData mesh = closed_surface(field, spacing_mm);
         const SurfaceCheck check = check_surface(mesh);
         // Handles do no harm here: the duct may well close a ring.
-        if (check.components == 1 && check.bad_edges == 0 && check.degenerate == 0) {
+        if (check.components == 1 && check.bad_edges == 0 && check.degenerate == 0 &&
+            least_agreement(mesh) > smallest_agreement) {
             add_atlas(mesh);
             mesh.name = "organ";
             return mesh;

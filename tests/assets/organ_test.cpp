@@ -21,7 +21,7 @@ const OrganField& field() {
     return organ;
 }
 const MeshData& organ() {
-    static const MeshData mesh = mesh_organ(field(), 5.0);
+    static const MeshData mesh = mesh_organ(field(), organ_spacing_mm);
     return mesh;
 }
 
@@ -47,6 +47,7 @@ TEST(Organ, is_one_closed_outward_surface) {
     EXPECT_EQ(check.bad_edges, 0U);
     EXPECT_EQ(check.degenerate, 0U);
     EXPECT_GT(check.volume_mm3, 1e5);
+    EXPECT_GT(least_agreement(organ()), 0.25) << "folds: somewhere two sheets are closer than the grid";
     EXPECT_GT(organ().triangle_count(), 8000U);
     double worst = 0.0;
     for (std::size_t v = 0; v < organ().positions.size(); ++v) {
