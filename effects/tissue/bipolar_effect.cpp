@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 
 #include <glm/gtc/type_ptr.hpp>
 
@@ -38,6 +39,20 @@ double radius_of(const ToolParams& tool) {
             return std::hypot(0.5 * size.x, size.z);
     }
     return 0.0;
+}
+
+/// A coarse mesh may have no triangle that is short enough: who holds it would see nothing and not know why.
+void say_all_connect(Log& log, const HoldResult& hold, double max_uv_perimeter) {
+    std::array<char, 256> text{
+        "none of the held triangles is burnt: they join parts that lie apart in the texture"};
+    if (static_cast<double>(hold.shortest_uv_perimeter) > max_uv_perimeter) {
+        std::snprintf(
+            text.data(), text.size(),
+            "none of the held triangles is burnt: the shortest has a perimeter of %.3g in the texture, "
+            "and 'max_uv_perimeter' is %.3g",
+            static_cast<double>(hold.shortest_uv_perimeter), max_uv_perimeter);
+    }
+    log.fault("tissue.held_connect", text.data(), hold.connecting);
 }
 
 }  // namespace
@@ -78,7 +93,8 @@ void BipolarParams::visit(ParamVisitor& v) {
     v.field({.name = "energy", .doc = "What burnt tissue has at least.", .min = 0.0, .max = 60000.0}, energy);
     v.field(
         {.name = "max_uv_perimeter",
-         .doc = "Triangles with a longer one in the texture connect parts that lie apart, and are not held.",
+         .doc = "Triangles with a longer one in the texture connect parts that lie apart, and are not held. "
+                "Coarse meshes want more: where no held triangle is left, a fault names the shortest.",
          .min = 0.0},
         max_uv_perimeter);
 }
@@ -159,11 +175,17 @@ Work BipolarEffect::prepare(Prepare& prepare) {
         return Work::idle("the tool is nowhere");
     }
     find_surface(prepare);
-    if (const std::uint64_t useless = triangles_->hold(numbers); useless > 0) {
-        prepare.log().fault("tissue.held", "held vertices that the mesh does not have are left out", useless);
+    const HoldResult hold = triangles_->hold(numbers);
+    if (hold.useless > 0) {
+        prepare.log().fault("tissue.held", "held vertices that the mesh does not have are left out",
+                            hold.useless);
+    }
+    if (triangles_->count() == 0 && hold.connecting == 0) {
+        return Work::idle("no triangle is held");
     }
     if (triangles_->count() == 0) {
-        return Work::idle("no triangle is held");
+        say_all_connect(prepare.log(), hold, params_.max_uv_perimeter);
+        return Work::idle("all triangles that are held connect parts of the texture");
     }
     // A pose may stretch the tool: by no more than the lengths of its columns together.
     const double stretch =

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace viscera::tissue {
@@ -34,14 +35,24 @@ class Groups {
     std::vector<std::uint32_t> parent_;
 };
 
+std::vector<float> find_uv_perimeters(const MeshData& mesh) {
+    std::vector<float> perimeters(mesh.triangle_count());
+    for (std::size_t t = 0; t < perimeters.size(); ++t) {
+        perimeters[t] =
+            perimeter(std::span<const glm::vec2>(mesh.uvs), std::span(mesh.indices).subspan(3 * t, 3));
+    }
+    return perimeters;
+}
+
 /// Triangles that are too long in the texture, or join what else hangs apart there.
-std::vector<char> find_connecting(const MeshData& mesh, double max_uv_perimeter) {
+std::vector<char> find_connecting(const MeshData& mesh, std::span<const float> uv_perimeter,
+                                  double max_uv_perimeter) {
     const std::size_t count = mesh.triangle_count();
     const auto corners = [&](std::size_t t) { return std::span(mesh.indices).subspan(3 * t, 3); };
     std::vector<char> connecting(count, 0);
     std::vector<float> stretch(count, 0.0F);
     for (std::size_t t = 0; t < count; ++t) {
-        const float uv = perimeter(std::span<const glm::vec2>(mesh.uvs), corners(t));
+        const float uv = uv_perimeter[t];
         const float mm = perimeter(std::span<const glm::vec3>(mesh.positions), corners(t));
         connecting[t] = static_cast<double>(uv) <= max_uv_perimeter ? 0 : 1;  // NaN connects
         stretch[t] = mm > 0.0F ? uv / mm : 1e30F;
@@ -78,7 +89,8 @@ HeldTriangles::HeldTriangles(const MeshData& mesh, std::span<const std::uint32_t
     : place_(place.begin(), place.end()),
       first_(place.size() + 1, 0),
       triangles_(mesh.indices.size()),
-      connecting_(find_connecting(mesh, max_uv_perimeter)),
+      uv_perimeter_(find_uv_perimeters(mesh)),
+      connecting_(find_connecting(mesh, uv_perimeter_, max_uv_perimeter)),
       held_(mesh.triangle_count(), 0) {
     for (const std::uint32_t v : mesh.indices) {
         ++first_[place_[v] + 1];
@@ -90,24 +102,31 @@ HeldTriangles::HeldTriangles(const MeshData& mesh, std::span<const std::uint32_t
     }
 }
 
-std::uint64_t HeldTriangles::hold(std::span<const float> vertices) {
+HoldResult HeldTriangles::hold(std::span<const float> vertices) {
     std::ranges::fill(held_, 0);
     count_ = 0;
-    std::uint64_t useless = 0;
+    HoldResult result;
+    result.shortest_uv_perimeter = std::numeric_limits<float>::infinity();
     for (const float number : vertices) {
         // Written so that NaN is refused.
         if (!(number >= 0.0F && number < static_cast<float>(place_.size()) && number == std::floor(number))) {
-            ++useless;
+            ++result.useless;
             continue;
         }
         const std::uint32_t at = place_[static_cast<std::size_t>(number)];
         for (std::uint32_t i = first_[at]; i < first_[at + 1]; ++i) {
             const std::uint32_t triangle = triangles_[i];
-            count_ += connecting_[triangle] == 0 && held_[triangle] == 0 ? 1 : 0;
-            held_[triangle] = connecting_[triangle] == 0 ? 1 : 0;
+            if (connecting_[triangle] != 0) {
+                ++result.connecting;
+                result.shortest_uv_perimeter =
+                    std::min(result.shortest_uv_perimeter, uv_perimeter_[triangle]);
+            } else if (held_[triangle] == 0) {
+                held_[triangle] = 1;
+                ++count_;
+            }
         }
     }
-    return useless;
+    return result;
 }
 
 }  // namespace viscera::tissue

@@ -179,6 +179,25 @@ TEST(Bipolar, BadInputIsSaidAndHarmless) {
     EXPECT_EQ(stage.stage.complaints().size(), 3U) << "each once";
 }
 
+TEST(Bipolar, HoldingACoarseMeshSaysWhichParameterKeepsItFromBurning) {
+    Plane plane;
+    plane.cells = 8;  // squares of an eighth of the plane, which covers 0.875 of the texture
+    BipolarStage coarse(nlohmann::json{{"size_mm", {4.0, 1.0, 2.0}}}, plane, "bipolar_coarse");
+    coarse.values.set("tissue.held", std::vector<float>{40});
+    coarse.values.set("tissue.tool", pose(20.0, 20.0, 0.0));
+    for (const double time_s : {0.0, 0.1}) {
+        EXPECT_EQ(coarse.frame(time_s).reason, "all triangles that are held connect parts of the texture");
+    }
+    ASSERT_EQ(coarse.stage.complaints().size(), 1U);
+    const std::string& said = coarse.stage.complaints().front();
+    EXPECT_NE(said.find("'max_uv_perimeter' is 0.15"), std::string::npos) << said;
+    // The number that is said is the one to give.
+    const double shortest = std::stod(said.substr(said.find("perimeter of ") + 13));
+    EXPECT_NEAR(shortest, 0.875 * (2.0 + std::numbers::sqrt2) / 8.0, 0.002) << said;
+    const auto& faults = coarse.stage.renderer().log().faults();
+    EXPECT_EQ(faults.at("tissue.held_connect"), 12U) << "six triangles in two frames";
+}
+
 TEST(HeldTriangles, ConnectingTrianglesAreNotHeld) {
     // Two charts, each a strip of squares, far apart in the texture, and a triangle that joins them; and one
     // that is merely long.
@@ -208,11 +227,15 @@ TEST(HeldTriangles, ConnectingTrianglesAreNotHeld) {
     for (std::uint32_t t = 0; t < mesh.triangle_count(); ++t) {
         EXPECT_EQ(triangles.connecting()[t] != 0, t == bridge || t == distant) << t;
     }
-    EXPECT_EQ(triangles.hold(std::vector<float>{1, 0}), 0U);
+    EXPECT_EQ(triangles.hold(std::vector<float>{1, 0}).useless, 0U);
     EXPECT_EQ(triangles.count(), 2U);
     EXPECT_EQ(triangles.held()[bridge], 0);
-    EXPECT_EQ(triangles.hold(std::vector<float>{500}), 1U);
+    EXPECT_EQ(triangles.hold(std::vector<float>{500}).useless, 1U);
     EXPECT_EQ(triangles.count(), 0U);
+    // The lone vertex has one triangle, which connects.
+    const tissue::HoldResult lone = triangles.hold(std::vector<float>{28});
+    EXPECT_EQ(lone.connecting, 1U);
+    EXPECT_GT(lone.shortest_uv_perimeter, 2.0F);
 }
 
 }  // namespace
