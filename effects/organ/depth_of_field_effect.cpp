@@ -20,7 +20,13 @@ void DepthOfFieldParams::visit(ParamVisitor& v) {
              .min = 0.0,
              .max = 0.25},
             radius);
-    v.field({.name = "taps", .doc = "Pixels read for each blurred one.", .min = 4, .max = 256}, taps);
+    v.field(
+        {.name = "taps",
+         .doc = "Pixels read for each widely blurred one; as many fewer for one of a small disc as leaves no "
+                "more noise.",
+         .min = 4,
+         .max = 256},
+        taps);
     v.field(
         {.name = "largest_blurriness",
          .doc = "That the picture holds: the larger of clamp_near and clamp_far of what drew it. Where it "
@@ -30,15 +36,14 @@ void DepthOfFieldParams::visit(ParamVisitor& v) {
         largest_blurriness);
 }
 
-std::vector<glm::dvec2> disc_taps(int count) {
+std::vector<glm::dvec2> disc_spiral(int count) {
     const double golden_angle = std::numbers::pi * (3.0 - std::sqrt(5.0));
-    std::vector<glm::dvec2> taps;
+    std::vector<glm::dvec2> places;
     for (int i = 0; i < count; ++i) {
-        const double radius = std::sqrt((i + 0.5) / count);
-        const glm::dvec2 place(radius * std::cos(i * golden_angle), radius * std::sin(i * golden_angle));
-        taps.push_back(glm::round(place * 1024.0) / 1024.0);
+        const double radius = std::sqrt(i + 0.5);
+        places.emplace_back(radius * std::cos(i * golden_angle), radius * std::sin(i * golden_angle));
     }
-    return taps;
+    return places;
 }
 
 std::vector<Port> DepthOfFieldEffect::ports() const {
@@ -56,10 +61,9 @@ std::vector<Port> DepthOfFieldEffect::ports() const {
 }
 
 std::span<const ProgramDesc> DepthOfFieldEffect::programs() const {
-    programs_ = {{"common/fullscreen.vert",
-                  "organ/depth_of_field.frag",
-                  {"TAPS " + std::to_string(params_.taps)},
-                  ""}};
+    const std::vector<std::string> defines{"TAPS " + std::to_string(params_.taps)};
+    programs_ = {{"common/fullscreen.vert", "organ/depth_of_field.frag", defines, ""},
+                 {"", "", defines, "organ/depth_of_field.comp"}};
     return programs_;
 }
 
@@ -75,15 +79,20 @@ Work DepthOfFieldEffect::prepare(Prepare& prepare) {
 }
 
 void DepthOfFieldEffect::draw(const Pass& pass) {
-    const gl::Program& program = pass.use(0);
-    if (taps_.size() != static_cast<std::size_t>(params_.taps)) {
-        const std::vector<glm::dvec2> places = disc_taps(params_.taps);
-        taps_.assign(places.begin(), places.end());
+    const bool compute = pass.compute("picture");
+    const gl::Program& program = pass.use(compute ? 1 : 0);
+    if (spiral_.size() != static_cast<std::size_t>(params_.taps)) {
+        const std::vector<glm::dvec2> places = disc_spiral(params_.taps);
+        spiral_.assign(places.begin(), places.end());
     }
     pass.bind(program, "u_picture", "colour", gl::Filter::nearest);
     program.set("u_radius", static_cast<float>(params_.radius * pass.size().y));
-    program.set("u_taps", std::span<const glm::vec2>(taps_));
-    pass.draw_fullscreen();
+    program.set("u_spiral", std::span<const glm::vec2>(spiral_));
+    if (compute) {
+        pass.dispatch(program, "picture");
+    } else {
+        pass.draw_fullscreen();
+    }
 }
 
 }  // namespace viscera::organ

@@ -16,9 +16,9 @@ struct DepthOfFieldParams {
     void visit(ParamVisitor& v);
 };
 
-/// Places in the unit disc, evenly spread: Vogel's spiral, one golden angle apart. Multiples of 2^-10, so
-/// that float and double find the same pixels.
-[[nodiscard]] std::vector<glm::dvec2> disc_taps(int count);
+/// Vogel's spiral, one golden angle from place to place: the first n fill a disc of radius sqrt(n) evenly,
+/// for every n up to `count`.
+[[nodiscard]] std::vector<glm::dvec2> disc_spiral(int count);
 
 /// Blurs a picture by the blurriness in its alpha. What is sharp in front of it gives it nothing.
 class DepthOfFieldEffect final : public Effect {
@@ -33,7 +33,7 @@ class DepthOfFieldEffect final : public Effect {
   private:
     DepthOfFieldParams params_;
     mutable std::vector<ProgramDesc> programs_;
-    std::vector<glm::vec2> taps_;
+    std::vector<glm::vec2> spiral_;
 };
 
 }  // namespace viscera::organ

@@ -59,24 +59,26 @@ float noise(int x, int y, int c) {
     return static_cast<float>((h * 2654435761U) >> 16) / 65535.0F;
 }
 
+/// Colours of noise; blurriness in waves or as noise.
+float noisy(bool smooth, int x, int y, int c) {
+    if (c < 3 || !smooth) {
+        return noise(x, y, c);
+    }
+    return 0.5F + 0.5F * std::sin(0.08F * static_cast<float>(x)) * std::cos(0.05F * static_cast<float>(y));
+}
+
 TEST_F(DepthOfField, IsItsReference) {
     for (const bool smooth : {true, false}) {
-        json s = scene(
-            [&](int x, int y, int c) {
-                if (c < 3) {
-                    return noise(x, y, c);
-                }
-                const float wave = 0.5F + 0.5F * std::sin(0.08F * static_cast<float>(x)) *
-                                              std::cos(0.05F * static_cast<float>(y));
-                return smooth ? wave : noise(x, y, 3);
-            },
-            {{"taps", 32}});
-        stage_.load(s);
+        stage_.load(scene([&](int x, int y, int c) { return noisy(smooth, x, y, c); }, {{"taps", 32}}));
         stage_.render(0.0);
-        const reference::Buffer wanted =
-            reference::depth_of_field(to_buffer(source()), radius * height, organ::disc_taps(32));
+        std::vector<char> undecided;
+        const reference::Buffer wanted = reference::depth_of_field(to_buffer(source()), radius * height,
+                                                                   organ::disc_spiral(32), undecided);
+        const auto decided = [&](int x, int y) {
+            return undecided[static_cast<std::size_t>(y * width + x)] == 0;
+        };
         for (int c = 0; c < 4; ++c) {
-            const Deviation found = deviation(picture(), wanted, c, c);
+            const Deviation found = deviation(picture(), wanted, c, c, decided);
             EXPECT_LE(found.half_units, half_bound)
                 << "channel " << c << " at " << found.x << ", " << found.y;
             EXPECT_GT(found.content, 5000U);
@@ -84,6 +86,73 @@ TEST_F(DepthOfField, IsItsReference) {
         EXPECT_TRUE(stage_.complaints().empty());
         EXPECT_NE(picture().data, source().data);
     }
+}
+
+TEST_F(DepthOfField, AComputeShaderGivesTheSamePicture) {
+    Stage compute(Backend::osmesa, {}, ComputeUse::on);
+    for (const bool smooth : {true, false}) {
+        const json s = scene([&](int x, int y, int c) { return noisy(smooth, x, y, c); });
+        stage_.load(s);
+        compute.load(s);
+        EXPECT_EQ(pass_of(stage_.render(0.0), "depth_of_field").path, DrawPath::fragment);
+        EXPECT_EQ(pass_of(compute.render(0.0), "depth_of_field").path, DrawPath::compute);
+        // Fragments are stored by cutting half floats off, image stores round them.
+        const Image stored = compute.renderer().read("final");
+        const Deviation found = deviation(picture(), to_buffer(stored));
+        EXPECT_LE(found.half_units, half_bound) << "at " << found.x << ", " << found.y;
+        EXPECT_TRUE(compute.complaints().empty());
+    }
+}
+
+/// What a gather of n places makes of one bright pixel, against a disc that is filled evenly: the root of the
+/// sum of the squared differences is how far the mean of white noise of deviation 1 is off.
+double noise_left(double disc, int count, const std::vector<glm::dvec2>& spiral) {
+    constexpr int half = 14;
+    constexpr int side = 2 * half + 1;
+    std::vector<double> kernel(std::size_t{side} * side, 0.0);
+    const auto at = [&](double x, double y) -> double& {
+        return kernel[static_cast<std::size_t>(std::floor(y)) * side +
+                      static_cast<std::size_t>(std::floor(x))];
+    };
+    constexpr double middle = half + 0.5;
+    at(middle, middle) += 1.0 / (count + 1);
+    for (int i = 0; i < count; ++i) {
+        const glm::dvec2 way = disc / std::sqrt(count) * spiral[static_cast<std::size_t>(i)];
+        at(middle + way.x, middle + way.y) += 1.0 / (count + 1);
+    }
+    std::vector<glm::dvec2> inside;
+    constexpr int across = 128;  // samples of the disc's diameter
+    for (int i = 0; i < across * across; ++i) {
+        const glm::dvec2 p = (glm::dvec2(i % across, i / across) + 0.5) * (2.0 / across) - 1.0;
+        if (glm::length(p) <= 1.0) {
+            inside.push_back(disc * p + middle);
+        }
+    }
+    for (const glm::dvec2& p : inside) {
+        at(p.x, p.y) -= 1.0 / static_cast<double>(inside.size());
+    }
+    double sum = 0.0;
+    for (const double value : kernel) {
+        sum += value * value;
+    }
+    return std::sqrt(sum);
+}
+
+TEST(DiscTaps, FewerInSmallDiscsLeaveNoMoreNoiseThanAllInWideOnes) {
+    for (const int taps : {4, 8, 12, 16, 24, 32, 40, 48, 56, 64, 80, 96, 128, 192, 256}) {
+        const std::vector<glm::dvec2> spiral = organ::disc_spiral(taps);
+        double worst = 0.0;
+        for (double disc = 0.5; disc < 12.0; disc *= 1.013) {
+            const int count = reference::taps_within(disc, taps);
+            ASSERT_LE(count, taps);
+            worst = std::max(worst, noise_left(disc, count, spiral) * std::sqrt(taps));
+        }
+        std::printf("  %3d taps: noise left times their root at most %.3f\n", taps, worst);
+        EXPECT_LE(worst, taps <= 48 ? 1.0 : 1.15) << taps;
+    }
+    EXPECT_LE(reference::taps_within(1.0, 48), 17);
+    EXPECT_LE(reference::taps_within(3.0, 48), 29);
+    EXPECT_EQ(reference::taps_within(0.49, 48), 0);
 }
 
 TEST_F(DepthOfField, WhatIsSharpStaysAsItIs) {
@@ -154,19 +223,19 @@ TEST_F(DepthOfField, RestsWhereNothingIsBlurredByHalfAPixel) {
     EXPECT_EQ(picture().data, source().data);
 }
 
-TEST(DiscTaps, AreSpreadEvenlyInTheUnitDisc) {
-    for (const int count : {4, 48, 256}) {
-        const std::vector<glm::dvec2> taps = organ::disc_taps(count);
-        ASSERT_EQ(taps.size(), static_cast<std::size_t>(count));
+TEST(DiscTaps, AnyFirstOfThemAreSpreadEvenly) {
+    const std::vector<glm::dvec2> spiral = organ::disc_spiral(256);
+    for (const int count : {4, 11, 48, 256}) {
         glm::dvec2 mean(0.0);
         double second = 0.0;
-        for (const glm::dvec2& tap : taps) {
-            EXPECT_LE(glm::length(tap), 1.001);
+        for (int i = 0; i < count; ++i) {
+            const glm::dvec2 tap = spiral[static_cast<std::size_t>(i)] / std::sqrt(count);
+            EXPECT_LE(glm::length(tap), 1.0);
             mean += tap / static_cast<double>(count);
             second += glm::dot(tap, tap) / count;
         }
         EXPECT_LE(glm::length(mean), 0.5 / std::sqrt(count));
-        EXPECT_NEAR(second, 0.5, 2e-3);  // of a disc that is filled evenly
+        EXPECT_NEAR(second, 0.5, 1e-9);  // of a disc that is filled evenly
     }
 }
 

@@ -337,8 +337,31 @@ Buffer organ_picture(const Organ& organ, int width, int height, const glm::dvec4
     return picture;
 }
 
-Buffer depth_of_field(const Buffer& picture, double radius_pixels, const std::vector<glm::dvec2>& taps) {
+namespace {
+
+/// Of T places read, unlike a disc of N pixels: the variance of the mean is 1/n - 1/N. The 1.75 pixels more,
+/// and the factor, are for places that find the same pixel.
+double exact_taps(double radius_pixels, int taps) {
+    const double pixels =
+        std::numbers::pi * (radius_pixels + 1.75) * (radius_pixels + 1.75) * std::max(1.0, taps / 24.0 - 1.0);
+    return 1.0 / (1.0 / taps + 1.0 / pixels);
+}
+
+bool near_whole(double x) {
+    return std::abs(x - std::round(x)) < 1e-4;
+}
+
+}  // namespace
+
+int taps_within(double radius_pixels, int taps) {
+    return radius_pixels < 0.5 ? 0 : static_cast<int>(std::ceil(exact_taps(radius_pixels, taps)));
+}
+
+Buffer depth_of_field(const Buffer& picture, double radius_pixels, const std::vector<glm::dvec2>& spiral,
+                      std::vector<char>& undecided) {
     Buffer blurred = picture;
+    undecided.assign(static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height), 0);
+    const int taps = static_cast<int>(spiral.size());
     for (int y = 0; y < picture.height; ++y) {
         for (int x = 0; x < picture.width; ++x) {
             const double b = 2.0 * picture.at(x, y, 3) - 1.0;
@@ -346,13 +369,16 @@ Buffer depth_of_field(const Buffer& picture, double radius_pixels, const std::ve
             if (radius < 0.5) {
                 continue;
             }
+            const int count = taps_within(radius, taps);
+            bool close = near_whole(exact_taps(radius, taps));
             glm::dvec3 sum(picture.at(x, y, 0), picture.at(x, y, 1), picture.at(x, y, 2));
             double weights = 1.0;
-            for (const glm::dvec2& tap : taps) {
-                const glm::dvec2 way = radius * tap;
-                const int i = std::clamp(static_cast<int>(std::floor(x + 0.5 + way.x)), 0, picture.width - 1);
-                const int j =
-                    std::clamp(static_cast<int>(std::floor(y + 0.5 + way.y)), 0, picture.height - 1);
+            for (int tap = 0; tap < count; ++tap) {
+                const glm::dvec2 way = radius / std::sqrt(count) * spiral[static_cast<std::size_t>(tap)];
+                const glm::dvec2 place = glm::dvec2(x, y) + 0.5 + way;
+                close = close || near_whole(place.x) || near_whole(place.y);
+                const int i = std::clamp(static_cast<int>(std::floor(place.x)), 0, picture.width - 1);
+                const int j = std::clamp(static_cast<int>(std::floor(place.y)), 0, picture.height - 1);
                 const double there = 2.0 * picture.at(i, j, 3) - 1.0;
                 const double reach = std::abs(there) * radius_pixels;
                 const double weight = picture.at(i, j, 3) >= picture.at(x, y, 3)
@@ -364,6 +390,7 @@ Buffer depth_of_field(const Buffer& picture, double radius_pixels, const std::ve
             for (int c = 0; c < 3; ++c) {
                 blurred.at(x, y, c) = sum[c] / weights;
             }
+            undecided[static_cast<std::size_t>(y * picture.width + x)] = close ? 1 : 0;
         }
     }
     return blurred;

@@ -112,9 +112,14 @@ struct Organ {
 /// Fragments are 2 x 2 differences apart, as GPUs take derivatives.
 [[nodiscard]] Buffer organ_picture(const Organ& organ, int width, int height, const glm::dvec4& background);
 
-/// Gather of a picture with stored blurriness in alpha. radius_pixels: at blurriness 1; taps: places in the
-/// unit disc.
+/// How many of `taps` places a disc of this radius [pixels] is read at: as few as leave the mean of white
+/// noise no further off than all of them leave that of a wide disc; 0 for discs within their pixel.
+[[nodiscard]] int taps_within(double radius_pixels, int taps);
+
+/// Gather of a picture with stored blurriness in alpha. radius_pixels: at blurriness 1; spiral: places of
+/// which the first n fill a disc of radius sqrt(n). `undecided`: pixels that a float may find other texels
+/// for, row by row.
 [[nodiscard]] Buffer depth_of_field(const Buffer& picture, double radius_pixels,
-                                    const std::vector<glm::dvec2>& taps);
+                                    const std::vector<glm::dvec2>& spiral, std::vector<char>& undecided);
 
 }  // namespace viscera::reference

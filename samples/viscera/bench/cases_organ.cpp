@@ -26,6 +26,24 @@ void fill(SceneText& scene, const std::string& target, const std::string& file, 
     scene.target(target, one_channel ? "r16f" : "rgba16f", 0.5);
 }
 
+/// Depth of field on a picture that is drawn once a frame.
+void measure_lens(Lab& lab, SceneText scene, const std::string& picture, ComputeUse compute,
+                  const std::string& name) {
+    scene.pass("depth_of_field", "organ.depth_of_field", json::object(),
+               {{"colour", picture}, {"picture", "bench.final"}});
+    scene.target("bench.final", "rgba16f");
+    scene.pass("copy", "bench.copy1", nullptr, {{"a", picture}, {"out", "bench.copy"}});
+    scene.target("bench.copy", "rgba16f");
+    scene.output("bench.final").output("bench.copy");
+    Stage stage(lab, scene.json(), {.compute = compute});
+    stage.run();
+    lab.add({.group = "organ",
+             .name = name,
+             .samples = stage.pass("depth_of_field"),
+             .ceiling = "copy",
+             .base = stage.pass("copy")});
+}
+
 }  // namespace
 
 void run_organ(Lab& lab) {
@@ -54,6 +72,7 @@ void run_organ(Lab& lab) {
         const char* name;
         json parameters;
         json targets;
+        const char* effect = "organ.surface";
     };
     const json blood = {{"blood_colour", "bench.blood"}};
     json everything = with(textured(), "normal_map", relief);
@@ -64,7 +83,10 @@ void run_organ(Lab& lab) {
     everything["lights"] = many;
     const json all_targets = {
         {"blood_colour", "bench.blood"}, {"blood_normal", "bench.blood_normal"}, {"energy", "bench.energy"}};
+    json speck = textured();
+    speck["mesh"]["placement"] = {{"scale", {1e-3, 1e-3, 1e-3}}};
     const std::vector<Feature> features{
+        {"one colour on the same mesh", textured(), json::object(), "bench.organ_ceiling"},
         {"textured", textured(), json::object()},
         {"relief", with(textured(), "normal_map", relief), json::object()},
         {"energy", textured(), {{"energy", "bench.energy"}}},
@@ -79,35 +101,38 @@ void run_organ(Lab& lab) {
         {"8 lights", with(textured(), "lights", many), json::object()},
         {"focus", with(textured(), "focus", focus), json::object()},
         {"membrane, sorted", with(textured(), "blending", "blended"), json::object()},
-        {"everything", everything, all_targets}};
+        {"everything", everything, all_targets},
+        // The last: whoever is given its depth next has hardly anything to clear.
+        {"clear of the depth", speck, json::object(), "bench.organ_ceiling"}};
     for (std::size_t i = 0; i < features.size(); ++i) {
         json targets = features[i].targets;
         const std::string number = std::to_string(i);
         targets["colour"] = "bench.colour" + number;
         targets["depth"] = "bench.depth" + number;
-        scene.pass("feature" + number, "organ.surface", features[i].parameters, targets);
+        scene.pass("feature" + number, features[i].effect, features[i].parameters, targets);
         scene.output("bench.colour" + number);
     }
-    const std::string last = "bench.colour" + std::to_string(features.size() - 1);
-    scene.pass("depth_of_field", "organ.depth_of_field", json::object(),
-               {{"colour", last}, {"picture", "bench.final"}});
-    scene.output("bench.final");
-
     Stage stage(lab, scene.json());
     stage.run();
     const Samples& base = stage.pass("feature0");
     for (std::size_t i = 0; i < features.size(); ++i) {
-        lab.add({.group = "organ",
-                 .name = features[i].name,
-                 .samples = stage.pass("feature" + std::to_string(i)),
-                 .ceiling = i == 0 ? "" : "textured",
-                 .base = i == 0 ? Samples() : base});
+        Row row{
+            .group = "organ", .name = features[i].name, .samples = stage.pass("feature" + std::to_string(i))};
+        if (i > 0) {
+            row.ceiling = features[0].name;
+            row.base = base;
+        }
+        lab.add(std::move(row));
     }
-    lab.add({.group = "organ",
-             .name = "depth of field, 48 taps",
-             .samples = stage.pass("depth_of_field"),
-             .ceiling = "textured",
-             .base = base});
+
+    SceneText lens(frame);
+    const std::string picture = "bench.colour";
+    lens.pass("organ", "organ.surface", with(with(textured(), "normal_map", relief), "focus", focus),
+              {{"colour", picture}});
+    measure_lens(lab, lens, picture, ComputeUse::off, "depth of field, 48 taps, fragment shader");
+    if (lab.by_compute()) {
+        measure_lens(lab, lens, picture, ComputeUse::on, "depth of field, 48 taps, compute shader");
+    }
 }
 
 }  // namespace viscera::app

@@ -74,9 +74,7 @@ void against_ceiling(Lab& lab, ComputeUse compute, const std::string& group) {
 
 void run_volume(Lab& lab) {
     against_ceiling(lab, ComputeUse::off, "volume, fragment shader");
-    const bool wanted = lab.options().compute == ComputeUse::on ||
-                        (lab.options().compute == ComputeUse::automatic && !lab.capabilities().software);
-    if (wanted && lab.capabilities().compute) {
+    if (lab.by_compute()) {
         against_ceiling(lab, ComputeUse::on, "volume, compute shader");
     }
 }

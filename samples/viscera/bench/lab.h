@@ -54,6 +54,13 @@ class Lab {
     /// Times come from the GPU's clock; otherwise from the wall's, with glFinish.
     [[nodiscard]] bool hardware() const { return capabilities_.gpu_timers(); }
 
+    /// Whether passes are to be measured as compute shaders, too.
+    [[nodiscard]] bool by_compute() const {
+        return capabilities_.compute &&
+               (options_.compute == ComputeUse::on ||
+                (options_.compute == ComputeUse::automatic && !capabilities_.software));
+    }
+
     /// The default scene as JSON.
     [[nodiscard]] nlohmann::json default_scene() const;
     /// Frame and `shared` of the default scene, without passes.

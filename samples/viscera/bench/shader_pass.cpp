@@ -5,7 +5,7 @@
 #include "engine/gl/sampler.h"
 #include "engine/runtime/embedded_shaders.h"
 #include "engine/runtime/pass.h"
-#include "samples/viscera/bench/volume_pass.h"
+#include "samples/viscera/bench/other_shader.h"
 
 namespace viscera::app {
 
@@ -98,7 +98,7 @@ void register_bench_effects(Registry& registry) {
         {.programs = {{"bench/triangles.vert", "bench/white.frag", {}}}, .triangles = true});
     add("bench.vertices",
         {.programs = {{"bench/triangles.vert", "bench/white.frag", {"HIDDEN"}}}, .triangles = true});
-    register_volume_passes(registry);
+    register_other_shaders(registry);
 }
 
 ShaderReader bench_shaders() {
