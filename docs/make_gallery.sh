@@ -35,6 +35,7 @@ picture head volume.colour 'CT of a head' assets/scenes/head.json
 picture mip volume.colour 'MR angiogram, maximum intensity' assets/scenes/mip.json
 picture isosurface volume.colour 'Skin and skull as surfaces, cut open' assets/scenes/isosurface.json
 picture labels volume.colour 'Segments, with a bleed' assets/scenes/labels.json
+picture cryosections volume.colour 'A head in the colours of its frozen slices' assets/scenes/cryosections.json
 picture xray volume.colour 'X-ray, exact line integrals' assets/scenes/xray.json
 picture rotational_ultrasound volume.colour 'Intravascular ultrasound of a coronary artery: a cylindrical volume, cut open' assets/scenes/rotational_ultrasound.json
 picture spherical_shell volume.colour 'Unborn child before a volume probe: a spherical volume' assets/scenes/spherical_shell.json

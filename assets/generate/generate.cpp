@@ -10,6 +10,7 @@
 #include "assets/generate/vessel_mesh.h"
 #include "assets/generate/volume_angiogram.h"
 #include "assets/generate/volume_artery.h"
+#include "assets/generate/volume_cryosections.h"
 #include "assets/generate/volume_fetus.h"
 #include "assets/generate/volume_files.h"
 #include "assets/generate/volume_head.h"
@@ -65,6 +66,7 @@ void generate_volumes(const std::filesystem::path& folder, std::uint64_t seed, i
     write_volume(head.ct, folder / "volumes" / "head.mha");
     write_volume(head.labels, folder / "volumes" / "head_labels.nrrd");
     write_volume(head.perfusion, folder / "volumes" / "overlay.nrrd");
+    write_volume(make_cryosections(head), folder / "volumes" / "cryosections.nrrd");
     write_volume(make_angiogram(seed, coarser), folder / "volumes" / "angiogram.mha");
     write_volume(make_artery(seed, coarser), folder / "volumes" / "artery.nrrd");
     write_volume(make_fetus(seed, coarser), folder / "volumes" / "fetus.nrrd");

@@ -94,10 +94,13 @@ std::string nrrd(const Volume& v) {
         const glm::dvec3 step = g.direction[axis] * g.spacing_mm[axis];
         axes += " (" + joined(step.x, step.y, step.z, ",") + ")";
     }
+    const bool coloured = v.channels > 1;
     return std::string("NRRD0004\ntype: ") + types.at(static_cast<std::size_t>(v.type)) +
-           "\ndimension: 3\nspace: left-posterior-superior\nsizes: " +
-           joined(g.dims.x, g.dims.y, g.dims.z, " ") + "\nspace directions:" + axes +
-           "\nkinds: domain domain domain\nendian: little\nencoding: gzip\nspace origin: (" +
+           "\ndimension: " + (coloured ? "4" : "3") +
+           "\nspace: left-posterior-superior\nsizes: " + (coloured ? std::to_string(v.channels) + " " : "") +
+           joined(g.dims.x, g.dims.y, g.dims.z, " ") + "\nspace directions:" + (coloured ? " none" : "") +
+           axes + "\nkinds: " + (coloured ? "vector " : "") +
+           "domain domain domain\nendian: little\nencoding: gzip\nspace origin: (" +
            joined(g.origin_mm.x, g.origin_mm.y, g.origin_mm.z, ",") + ")\n" + geometry_keys(g.shape) + "\n" +
            compressed(v.voxels, Wrapper::gzip);
 }

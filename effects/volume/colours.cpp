@@ -116,4 +116,35 @@ std::shared_ptr<const Source> load_colours(Assets& assets, const Source& source,
     return load_derived<Colours>(assets, key, source, [&](Colours& made) { follow(made, source); });
 }
 
+ColourLimits colour_limits(const AccumulateParams& params) {
+    ColourLimits limits;
+    const std::size_t count = params.channels.size();
+    for (std::size_t c = 0; c < count; ++c) {
+        const auto texel = static_cast<int>(count == 2 && c == 1 ? 3 : c);
+        const glm::dvec2 threshold = params.channels[c].threshold;
+        if (threshold.x > 0.0) {
+            limits.low[texel] = threshold.x;
+        }
+        if (threshold.y < 1.0) {
+            limits.high[texel] = threshold.y;
+        }
+    }
+    return limits;
+}
+
+VoxelExtinction colour_extinction(const Volume& colours, const AccumulateParams& params, double diagonal_mm) {
+    const double opacity = params.opacity / params.samples;
+    const double per_mm = params.samples / diagonal_mm;
+    return [&colours, opacity, per_mm, limits = colour_limits(params)](const glm::ivec3& voxel) {
+        glm::dvec4 share;
+        for (int c = 0; c < 4; ++c) {
+            share[c] = colours.value_of(colours.stored(voxel, c));
+        }
+        constexpr double most_opacity = 1.0 - 0x1p-24;
+        const bool kept = glm::all(glm::greaterThanEqual(share, limits.low)) &&
+                          glm::all(glm::lessThanEqual(share, limits.high));
+        return kept ? -std::log1p(-std::clamp(share.a * opacity, 0.0, most_opacity)) * per_mm : 0.0;
+    };
+}
+
 }  // namespace viscera::volume

@@ -85,7 +85,9 @@ std::vector<std::byte> all_of(const Volume& volume, const VoxelBox& box) {
 
 gl::TextureFormat format_of(ScalarType type, int channel) {
     if (channel == all_channels) {
-        return type == ScalarType::i16 ? gl::rgba16_snorm_format : gl::rgba16_format;
+        return type == ScalarType::f32   ? gl::texture_format(PixelFormat::rgba32f)
+               : type == ScalarType::i16 ? gl::rgba16_snorm_format
+                                         : gl::rgba16_format;
     }
     return type == ScalarType::f32 ? gl::texture_format(PixelFormat::r32f) : gl::r16_format;
 }

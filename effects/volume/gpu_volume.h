@@ -13,8 +13,8 @@ namespace viscera::volume {
 /// some devices.
 [[nodiscard]] TexelMap texel_map(ScalarType type);
 
-/// Instead of a channel: all four of a u16 volume (effects/volume/colours.h), or of an i16 one, which come
-/// back as stored / 32767 (effects/volume/gradients.h).
+/// Instead of a channel: all four of a u16 volume (effects/volume/colours.h), of an f32 one (its
+/// coefficients), or of an i16 one, which come back as stored / 32767 (effects/volume/gradients.h).
 inline constexpr int all_channels = -1;
 
 /// The texels of one channel of a box as the texture wants them: 16-bit, or floats with `empty` (stored) for

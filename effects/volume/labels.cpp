@@ -20,6 +20,34 @@ std::vector<const SegmentLook*> looks(const LabelParams& params) {
     return all;
 }
 
+/// From labels to looks.
+class LookIndex {
+  public:
+    explicit LookIndex(const LabelParams& params) {
+        for (std::size_t i = 0; i < params.segments.size(); ++i) {
+            index_of_[params.segments[i].id] = static_cast<std::uint16_t>(i + 1);
+        }
+    }
+
+    std::uint16_t of(double label) {
+        if (label != last_) {
+            broken_ = !(label == std::floor(label) && std::isfinite(label));
+            const auto found = std::isnan(label) ? index_of_.end() : index_of_.find(label);
+            last_ = label;
+            last_index_ = found == index_of_.end() ? std::uint16_t{0} : found->second;
+        }
+        return last_index_;
+    }
+    /// Whether the last one was no whole number.
+    [[nodiscard]] bool broken() const { return broken_; }
+
+  private:
+    std::map<double, std::uint16_t> index_of_;
+    double last_ = 0.5;  ///< labels come in runs
+    std::uint16_t last_index_ = 0;
+    bool broken_ = true;
+};
+
 }  // namespace
 
 void SegmentLook::visit(ParamVisitor& v) {
@@ -75,32 +103,40 @@ void LabelParams::validate() const {
 
 std::vector<std::uint16_t> dense_labels(const Volume& labels, const LabelParams& params,
                                         std::size_t& broken) {
-    std::map<double, std::uint16_t> index_of;
-    for (std::size_t i = 0; i < params.segments.size(); ++i) {
-        index_of[params.segments[i].id] = static_cast<std::uint16_t>(i + 1);
-    }
+    LookIndex index(params);
     std::vector<std::uint16_t> dense;
     dense.reserve(labels.grid.voxel_count());
-    double last = 0.5;  // labels come in runs
-    std::uint16_t last_index = 0;
-    bool last_broken = false;
     const glm::ivec3 n = labels.grid.dims;
     for (int z = 0; z < n.z; ++z) {
         for (int y = 0; y < n.y; ++y) {
             for (int x = 0; x < n.x; ++x) {
-                const double label = labels.value_of(labels.stored({x, y, z}));
-                if (label != last) {
-                    last_broken = !(label == std::floor(label) && std::isfinite(label));
-                    const auto found = std::isnan(label) ? index_of.end() : index_of.find(label);
-                    last = label;
-                    last_index = found == index_of.end() ? std::uint16_t{0} : found->second;
-                }
-                dense.push_back(last_index);
-                broken += last_broken ? 1 : 0;
+                dense.push_back(index.of(labels.value_of(labels.stored({x, y, z}))));
+                broken += index.broken() ? 1 : 0;
             }
         }
     }
     return dense;
+}
+
+std::function<std::uint16_t(const glm::ivec3& voxel)> labels_at(const Volume& labels,
+                                                                const LabelParams& params,
+                                                                const VolumeGrid& shown) {
+    const VolumeGrid& grid = labels.grid;
+    const bool straight = !grid.curvilinear() && !shown.curvilinear();
+    const glm::dmat4 map =
+        straight ? glm::inverse(grid.index_to_world()) * shown.index_to_world() : glm::dmat4(1.0);
+    return [&labels, shown, straight, map, index = LookIndex(params)](const glm::ivec3& voxel) mutable {
+        const VolumeGrid& own = labels.grid;
+        const glm::dvec3 place = straight ? glm::dvec3(map * glm::dvec4(glm::dvec3(voxel), 1.0))
+                                          : own.index_of_world(shown.world_of_index(glm::dvec3(voxel)));
+        glm::ivec3 at(glm::floor(place + 0.5));
+        if (const int ring = own.shape.wrap_axis(); ring >= 0) {
+            at[ring] = (at[ring] % own.dims[ring] + own.dims[ring]) % own.dims[ring];
+        }
+        const bool inside =
+            glm::all(glm::greaterThanEqual(at, glm::ivec3(0))) && glm::all(glm::lessThan(at, own.dims));
+        return inside ? index.of(labels.value_of(labels.stored(at))) : std::uint16_t{0};
+    };
 }
 
 std::vector<glm::vec4> look_table(const LabelParams& params) {

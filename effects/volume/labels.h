@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -52,6 +53,12 @@ struct LabelParams {
 /// size. x fastest. `broken` counts labels that are no whole number; they count as not listed.
 [[nodiscard]] std::vector<std::uint16_t> dense_labels(const Volume& labels, const LabelParams& params,
                                                       std::size_t& broken);
+
+/// The same at the centres of the voxels of the volume that is shown; 0 beside the labels, which must outlive
+/// it.
+[[nodiscard]] std::function<std::uint16_t(const glm::ivec3& voxel)> labels_at(const Volume& labels,
+                                                                              const LabelParams& params,
+                                                                              const VolumeGrid& shown);
 
 /// The looks as glsl/volume/labels.glsl reads them: one column per index, two rows.
 [[nodiscard]] std::vector<glm::vec4> look_table(const LabelParams& params);

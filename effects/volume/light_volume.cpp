@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace viscera::volume {
 namespace {
@@ -99,9 +100,15 @@ double ExtinctionGrid::at(const glm::dvec3& texture) const {
     return sum;
 }
 
-ExtinctionGrid extinction_grid(const Volume& volume, int channel, const glm::dmat4& texture_to_world,
-                               int resolution, const std::function<double(double value)>& extinction) {
-    const glm::ivec3 voxels = volume.grid.dims;
+VoxelExtinction of_values(const Volume& volume, int channel, std::function<double(double value)> extinction) {
+    return [&volume, channel, extinction = std::move(extinction)](const glm::ivec3& voxel) {
+        const double value = volume.value_of(volume.stored(voxel, channel));
+        return std::isfinite(value) ? extinction(value) : 0.0;
+    };
+}
+
+ExtinctionGrid extinction_grid(const glm::ivec3& voxels, const glm::dmat4& texture_to_world, int resolution,
+                               const VoxelExtinction& extinction) {
     ExtinctionGrid grid{.dims = cells_of(texture_to_world, resolution, voxels),
                         .texture_to_world = texture_to_world};
     each_cell(grid.dims, [&](const glm::ivec3& cell) {
@@ -109,21 +116,17 @@ ExtinctionGrid extinction_grid(const Volume& volume, int channel, const glm::dma
         const glm::ivec3 size = (cell + 1) * voxels / grid.dims - first;
         const glm::ivec3 count = glm::min(size, glm::ivec3(samples_per_axis));
         double sum = 0.0;
-        each_cell(count, [&](const glm::ivec3& i) {
-            const double value =
-                volume.value_of(volume.stored(first + (2 * i + 1) * size / (2 * count), channel));
-            sum += std::isfinite(value) ? extinction(value) : 0.0;
-        });
+        each_cell(count,
+                  [&](const glm::ivec3& i) { sum += extinction(first + (2 * i + 1) * size / (2 * count)); });
         grid.per_mm.push_back(static_cast<float>(sum / (count.x * count.y * count.z)));
     });
     return grid;
 }
 
-ExtinctionGrid extinction_in_box(const Volume& volume, int channel, const glm::dmat4& box_to_world,
-                                 int resolution, const std::function<double(double value)>& extinction) {
+ExtinctionGrid extinction_in_box(const VolumeGrid& voxels, const glm::dmat4& box_to_world, int resolution,
+                                 const VoxelExtinction& extinction) {
     ExtinctionGrid grid{.dims = cells_of(box_to_world, resolution, glm::ivec3(resolution)),
                         .texture_to_world = box_to_world};
-    const VolumeGrid& voxels = volume.grid;
     const glm::dmat4 to_unplaced = voxels.box_to_world();
     const int ring = voxels.shape.wrap_axis();
     each_cell(grid.dims, [&](const glm::ivec3& cell) {
@@ -139,8 +142,7 @@ ExtinctionGrid extinction_in_box(const Volume& volume, int channel, const glm::d
                 glm::any(glm::greaterThanEqual(voxel, voxels.dims))) {
                 return;
             }
-            const double value = volume.value_of(volume.stored(voxel, channel));
-            sum += std::isfinite(value) ? extinction(value) : 0.0;
+            sum += extinction(voxel);
         });
         grid.per_mm.push_back(static_cast<float>(sum / 8.0));
     });

@@ -32,19 +32,22 @@ struct ExtinctionGrid {
     [[nodiscard]] double at(const glm::dvec3& texture) const;
 };
 
-/// `resolution`: cells along the longest side of the box; never more than there are voxels. Each cell
-/// averages at most 4 x 4 x 4 of its voxels, evenly chosen. `extinction`: of a value [1/mm]; not finite
-/// voxels count as 0.
-[[nodiscard]] ExtinctionGrid extinction_grid(const Volume& volume, int channel,
-                                             const glm::dmat4& texture_to_world, int resolution,
-                                             const std::function<double(double value)>& extinction);
+/// Extinction of a voxel [1/mm].
+using VoxelExtinction = std::function<double(const glm::ivec3& voxel)>;
+/// That of the values of a channel; not finite ones count as 0. The volume must outlive it.
+[[nodiscard]] VoxelExtinction of_values(const Volume& volume, int channel,
+                                        std::function<double(double value)> extinction);
+
+/// `resolution`: cells along the longest side of the box; never more than there are voxels (`dims`). Each
+/// cell averages at most 4 x 4 x 4 of its voxels, evenly chosen.
+[[nodiscard]] ExtinctionGrid extinction_grid(const glm::ivec3& dims, const glm::dmat4& texture_to_world,
+                                             int resolution, const VoxelExtinction& extinction);
 
 /// The same for a volume of any shape, over the unit box around it: grid.box_to_world() with the placement.
 /// Each cell averages 2 x 2 x 2 places, each of the voxel that it lies in; beside the volume there is
 /// nothing.
-[[nodiscard]] ExtinctionGrid extinction_in_box(const Volume& volume, int channel,
-                                               const glm::dmat4& box_to_world, int resolution,
-                                               const std::function<double(double value)>& extinction);
+[[nodiscard]] ExtinctionGrid extinction_in_box(const VolumeGrid& voxels, const glm::dmat4& box_to_world,
+                                               int resolution, const VoxelExtinction& extinction);
 
 /// Share of light that reaches a place (texture coordinates) from the world direction `towards`, of length 1,
 /// from no farther than `reach_mm`: exp of minus the extinction summed in steps of one cell at most, by

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "effects/volume/colours.h"
 #include "engine/core/error.h"
 #include "engine/core/hash.h"
 
@@ -307,6 +308,33 @@ void Look::bind_gradient(const LookScene& scene, const Pass& pass, const gl::Pro
     pass.bind(program, "u_gradient_factor", *gradient_factor_.texture, gl::Filter::nearest);
 }
 
+/// What of light a voxel takes, as it is seen: in its segment's look.
+VoxelExtinction Look::extinction_of(const LookParams& params, const LookScene& scene) const {
+    const Volume& volume = scene.source.volume();
+    const auto of_function = [](const TransferFunction& function) {
+        return [function](double value) {
+            return extinction(evaluate(function, value).w, function.reference_length_mm);
+        };
+    };
+    const auto of_voxels = [&](const TransferFunction& function) {
+        return scene.colours != nullptr
+                   ? colour_extinction(*scene.colours, *scene.accumulate, volume.grid.diagonal_mm())
+                   : of_values(volume, scene.channel, of_function(function));
+    };
+    if (!params.labels.used()) {
+        return of_voxels(scene.function);
+    }
+    std::vector<VoxelExtinction> rows{of_voxels(scene.function)};
+    for (const TransferFunction& ramp : ramps(params.labels, scene.function)) {
+        rows.push_back(of_voxels(ramp));
+    }
+    return [rows = std::move(rows), looks = look_table(params.labels),
+            label_at = labels_at(labels_->volume(), params.labels, volume.grid)](const glm::ivec3& voxel) {
+        const glm::vec4& how = looks[looks.size() / 2 + label_at(voxel)];
+        return how.x > 0.0F ? static_cast<double>(how.x) * rows[static_cast<std::size_t>(how.y)](voxel) : 0.0;
+    };
+}
+
 void Look::bind_light(const LookParams& params, const LookScene& scene, const Pass& pass,
                       const gl::Program& program) {
     const LightVolumeParams& how = params.shading.light_volume;
@@ -325,18 +353,16 @@ void Look::bind_light(const LookParams& params, const LookScene& scene, const Pa
                                     .add(how.resolution)
                                     .add(how.radius_mm)
                                     .add(how.shadow > 0.0 ? light : glm::dvec4(0.0))
+                                    .add(labels_ || scene.colours != nullptr ? parameters_key_ : 0)
                                     .value();
     light_ = pass.assets().shared<Made>(alike, [] { return std::make_shared<Made>(); });
-    const std::uint64_t key = scene.source.version() + 1;  // 0: not made yet
+    const std::uint64_t key = Hash().add(scene.source.version()).add(key_of(labels_)).value();
     if (light_->key != key) {
-        const auto of_value = [&](double value) {
-            return extinction(evaluate(scene.function, value).w, scene.function.reference_length_mm);
-        };
+        const VolumeGrid& voxels = scene.source.volume().grid;
+        const VoxelExtinction of_voxel = extinction_of(params, scene);
         const ExtinctionGrid grid =
-            curved ? extinction_in_box(scene.source.volume(), scene.channel, box_to_world(scene),
-                                       how.resolution, of_value)
-                   : extinction_grid(scene.source.volume(), scene.channel, scene.space.local_to_world,
-                                     how.resolution, of_value);
+            curved ? extinction_in_box(voxels, box_to_world(scene), how.resolution, of_voxel)
+                   : extinction_grid(voxels.dims, scene.space.local_to_world, how.resolution, of_voxel);
         light_->texture.emplace(gl::Texture::make_3d(pass.gl(), {grid.dims.x, grid.dims.y, grid.dims.z},
                                                      gl::texture_format(PixelFormat::rg32f), "light volume"));
         const std::vector<glm::vec2> texels = light_volume(grid, how, light);

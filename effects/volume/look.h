@@ -5,9 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "effects/volume/classic.h"
 #include "effects/volume/clip.h"
 #include "effects/volume/gpu_volume.h"
 #include "effects/volume/labels.h"
+#include "effects/volume/light_volume.h"
 #include "effects/volume/overlay.h"
 #include "effects/volume/shading.h"
 #include "effects/volume/space.h"
@@ -46,8 +48,10 @@ struct LookScene {
     const TransferFunction& function;
     const Space& space;  ///< with the placement, which labels and overlay follow
     TexelMap value_of_texel;
-    TexelRange range;  ///< [texel]
-    int entries;       ///< of tables over the range
+    TexelRange range;                 ///< [texel]
+    int entries;                      ///< of tables over the range
+    const Volume* colours = nullptr;  ///< accumulated as they are; none: the function says what is seen
+    const AccumulateParams* accumulate = nullptr;  ///< of colours
 };
 
 /// For glsl/volume/material.glsl: shading, gradient opacity, labels, overlay and coarse light.
@@ -81,6 +85,8 @@ class Look {
     void bind_gradient(const LookScene& scene, const Pass& pass, const gl::Program& program);
     void bind_light(const LookParams& params, const LookScene& scene, const Pass& pass,
                     const gl::Program& program);
+
+    [[nodiscard]] VoxelExtinction extinction_of(const LookParams& params, const LookScene& scene) const;
 
     /// A texture with the key of what it was made from.
     struct Made {

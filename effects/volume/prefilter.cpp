@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <thread>
 #include <vector>
 
@@ -201,22 +202,48 @@ std::vector<std::byte> all_coefficients(Assets& assets, const Source& source, in
     return {bytes.begin(), bytes.end()};
 }
 
-void follow(Assets& assets, DerivedSource& coefficients, const Source& voxels, int channel) {
+/// f32 channels beside each other.
+std::vector<std::byte> interleaved(std::vector<std::vector<std::byte>> channels) {
+    if (channels.size() == 1) {
+        return std::move(channels.front());
+    }
+    std::vector<std::byte> result(channels.size() * channels.front().size());
+    std::byte* to = result.data();
+    for (std::size_t at = 0; at < channels.front().size(); at += sizeof(float)) {
+        for (const std::vector<std::byte>& channel : channels) {
+            std::memcpy(to, channel.data() + at, sizeof(float));
+            to += sizeof(float);
+        }
+    }
+    return result;
+}
+
+void follow(Assets& assets, DerivedSource& coefficients, const Source& voxels, int wanted) {
     const Volume& volume = voxels.volume();
     const auto empty = static_cast<float>((voxels.statistics.min - volume.intercept) / volume.slope);
     const glm::ivec3 dims = volume.grid.dims;
+    const int first = wanted == all_channels ? 0 : wanted;
+    const int end = wanted == all_channels ? volume.channels : wanted + 1;
+    const auto of_each = [&](const auto& make) {
+        std::vector<std::vector<std::byte>> made;
+        for (int channel = first; channel < end; ++channel) {
+            made.push_back(make(channel));
+        }
+        return interleaved(std::move(made));
+    };
     bool everything = true;
     const std::vector<VoxelBox> changed = coefficients.changes(voxels, everything);
     if (everything) {
-        coefficients.replace({.grid = volume.grid,
-                              .type = ScalarType::f32,
-                              .channels = 1,
-                              .voxels = all_coefficients(assets, voxels, channel, empty),
-                              .slope = volume.slope,
-                              .intercept = volume.intercept,
-                              .unit = volume.unit,
-                              .narrowing_error = volume.narrowing_error,
-                              .source = volume.source});
+        coefficients.replace(
+            {.grid = volume.grid,
+             .type = ScalarType::f32,
+             .channels = end - first,
+             .voxels = of_each([&](int channel) { return all_coefficients(assets, voxels, channel, empty); }),
+             .slope = volume.slope,
+             .intercept = volume.intercept,
+             .unit = volume.unit,
+             .narrowing_error = volume.narrowing_error,
+             .source = volume.source});
     }
     for (VoxelBox box : changed) {
         const int ring = volume.grid.shape.wrap_axis();
@@ -226,10 +253,14 @@ void follow(Assets& assets, DerivedSource& coefficients, const Source& voxels, i
         }
         const VoxelBox reached = grown(box, reach, dims);
         const VoxelBox needed = grown(box, 2 * reach, dims);
-        std::vector<float> values = stored_values(volume, channel, needed, empty);
-        static_cast<void>(make_coefficients(needed.size, values, 0, {}, ring));  // a few voxels: nobody waits
-        values = cut_out(values, needed, reached);
-        coefficients.update(reached, std::as_bytes(std::span(values)));
+        coefficients.update(reached, of_each([&](int channel) {
+                                std::vector<float> values = stored_values(volume, channel, needed, empty);
+                                // A few voxels: nobody waits.
+                                static_cast<void>(make_coefficients(needed.size, values, 0, {}, ring));
+                                values = cut_out(values, needed, reached);
+                                const auto bytes = std::as_bytes(std::span(values));
+                                return std::vector<std::byte>(bytes.begin(), bytes.end());
+                            }));
     }
     coefficients.settle(voxels, voxels.statistics);
 }

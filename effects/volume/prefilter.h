@@ -18,10 +18,10 @@ namespace viscera::volume {
 [[nodiscard]] bool make_coefficients(const glm::ivec3& dims, std::span<float> voxels, int threads = 0,
                                      const Progress& progress = {}, int ring = -1);
 
-/// The coefficients of one channel as a source of one f32 channel, in stored units; grid, rescaling and
-/// statistics are the voxels'. Made on first use and kept in `assets`, those of a file also in its disk cache
-/// under the voxels' content; after changes of a live volume made again, where those are small only around
-/// them and all around a ring. A change reaches 16 voxels, where it has faded to 1e-9.
+/// The coefficients of one channel (all_channels: of each) as a source of f32, in stored units; grid,
+/// rescaling and statistics are the voxels'. Made on first use and kept in `assets`, those of a file also in
+/// its disk cache under the voxels' content; after changes of a live volume made again, where those are small
+/// only around them and all around a ring. A change reaches 16 voxels, where it has faded to 1e-9.
 [[nodiscard]] std::shared_ptr<const Source> load_coefficients(Assets& assets, const Source& source,
                                                               int channel);
 

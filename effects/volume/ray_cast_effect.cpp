@@ -94,12 +94,10 @@ void RayCastEffect::check_colours() const {
                         std::string(what) + " a value; accumulate.channels takes colours as they are");
         }
     };
-    refuse(params_.sampling.scheme == Scheme::preintegrated, "/sampling/scheme", "preintegrated needs");
-    refuse(params_.sampling.reconstruction.is_tricubic(), "/sampling/filter", "cubic filters need");
-    refuse(params_.look.shading.enabled.value_or(false), "/shading/enabled", "shading needs the gradient of");
-    refuse(params_.look.shading.light_volume.used(), "/shading/light_volume", "a light volume needs");
-    refuse(params_.look.labels.used(), "/labels", "labels need");
-    refuse(params_.look.overlay.used(), "/overlay", "an overlay needs");
+    refuse(params_.sampling.scheme == Scheme::preintegrated, "/sampling/scheme",
+           "preintegrated integrates a transfer function over");
+    refuse(params_.look.labels.used() && params_.look.labels.has_ramps(), "/labels",
+           "transfer functions of segments take");
 }
 
 /// With an atlas they are made on the fly: nothing else is as large as what needs one.
@@ -122,26 +120,16 @@ void RayCastEffect::bind_gradients(const Pass& pass, const gl::Program& program,
               space_.shape.wrap ? gl::Wrap::repeat : gl::Wrap::clamp);
 }
 
-void RayCastEffect::set_colours(const gl::Program& program) const {
+void RayCastEffect::set_colours(const gl::Program& program, double share_per_texel) const {
     const AccumulateParams& how = params_.accumulate;
-    glm::vec4 low(-1.0F);
-    glm::vec4 high(2.0F);
-    for (std::size_t c = 0; c < how.channels.size(); ++c) {
-        const glm::vec2 threshold(how.channels[c].threshold);
-        const auto texel = static_cast<int>(how.channels.size() == 2 && c == 1 ? 3 : c);
-        low[texel] = threshold.x;
-        high[texel] = threshold.y;
-    }
-    program.set("u_colour_low", low);
-    program.set("u_colour_high", high);
-    program.set("u_colour_opacity",
-                glm::vec2(glm::dvec2(how.opacity / how.samples, how.samples / diagonal_mm())));
+    const ColourLimits limits = colour_limits(how);
+    program.set("u_colour_scale", static_cast<float>(share_per_texel));
+    program.set("u_colour_low", glm::vec4(limits.low));
+    program.set("u_colour_high", glm::vec4(limits.high));
+    program.set(
+        "u_colour_opacity",
+        glm::vec2(glm::dvec2(how.opacity / how.samples, how.samples / source_->volume().grid.diagonal_mm())));
     program.set("u_colour_contrast", glm::vec2(glm::dvec2(how.brightness, how.contrast)));
-}
-
-/// Of the volume's box, before it is placed.
-double RayCastEffect::diagonal_mm() const {
-    return glm::length(glm::dvec3(source_->volume().grid.box_to_world() * glm::dvec4(1, 1, 1, 0)));
 }
 
 std::vector<Port> RayCastEffect::ports() const {
@@ -202,9 +190,10 @@ void RayCastEffect::find_function(Prepare& prepare) {
     if (wanted == RayFunction::density) {
         function_ = normalised(density_function(function_, params_.density), faults);
     } else if (wanted == RayFunction::accumulate) {
-        function_ = normalised(accumulate_function(params_.accumulate, source_->statistics.min,
-                                                   source_->statistics.max, diagonal_mm()),
-                               faults);
+        function_ =
+            normalised(accumulate_function(params_.accumulate, source_->statistics.min,
+                                           source_->statistics.max, source_->volume().grid.diagonal_mm()),
+                       faults);
     }
     variant_.look = projects() ? Look::Variant{} : Look::variant(params_.look, function_);
 }
@@ -263,12 +252,14 @@ Work RayCastEffect::prepare(Prepare& prepare) {
     const bool changed = parameters_key_ != prepare.parameters_key() || source_version_ != source_->version();
     const bool coefficients = params_.sampling.reconstruction.uses_coefficients();
     sampled_channel_ = coefficients ? 0 : params_.volume.channel;
-    sampled_ = coefficients ? load_coefficients(prepare.assets(), *source_, params_.volume.channel) : source_;
+    voxels_ = source_;
+    int channel = params_.volume.channel;
     if (shows_colours()) {
-        sampled_channel_ = all_channels;
-        sampled_ =
+        voxels_ =
             load_colours(prepare.assets(), *source_, static_cast<int>(params_.accumulate.channels.size()));
+        channel = sampled_channel_ = all_channels;
     }
+    sampled_ = coefficients ? load_coefficients(prepare.assets(), *voxels_, channel) : voxels_;
     const Volume& volume = source_->volume();
     if (changed) {
         find_function(prepare);
@@ -302,8 +293,10 @@ Work RayCastEffect::prepare(Prepare& prepare) {
     if (space_.shape.curvilinear() && glm::any(glm::greaterThanEqual(box_min_, box_max_))) {
         return Work::idle("the crop leaves nothing");
     }
-    gradients_ =
-        needs_kept_gradients() ? load_gradients(prepare.assets(), *source_, params_.volume.channel) : nullptr;
+    constexpr int opacity = 3;  // of colours, of which shading takes the gradient
+    gradients_ = needs_kept_gradients() ? load_gradients(prepare.assets(), *voxels_,
+                                                         shows_colours() ? opacity : params_.volume.channel)
+                                        : nullptr;
     const FrameBox cropped = space_.box_of(box_min_, box_max_);
     const ClippedBox box =
         clipped_box(cropped.min, cropped.max, space_.local_to_world, params_.look.clip_planes);
@@ -442,16 +435,25 @@ void RayCastEffect::draw(const Pass& pass) {
         set_clips(program, params_.look.clip_planes, space_.local_to_world);
     }
     if (shows_colours()) {
-        set_colours(program);
+        set_colours(program, sampled_->volume().slope * map.scale);
     }
     if (gradients_ && !variant_.atlas) {
         bind_gradients(pass, program, map);
     }
     if (!projects()) {
-        look_.bind(params_.look, variant_.look,
-                   {*source_, params_.volume.channel, function_, space_, TexelMap{value_scale, value_offset},
-                    texel_range(map), params_.transfer_function.entries},
-                   pass, program);
+        LookScene scene{*source_,
+                        params_.volume.channel,
+                        function_,
+                        space_,
+                        TexelMap{value_scale, value_offset},
+                        texel_range(map),
+                        params_.transfer_function.entries};
+        if (shows_colours()) {
+            scene.value_of_texel = {};
+            scene.colours = &voxels_->volume();
+            scene.accumulate = &params_.accumulate;
+        }
+        look_.bind(params_.look, variant_.look, scene, pass, program);
     }
     if (variant_.skipping != Skipping::none) {
         const VoxelBox& occupied = skip_map_.occupied_box();

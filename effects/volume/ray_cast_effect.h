@@ -54,8 +54,7 @@ class RayCastEffect final : public Effect {
     [[nodiscard]] bool needs_kept_gradients() const;
     void bind_gradients(const Pass& pass, const gl::Program& program, const TexelMap& map) const;
     void check_colours() const;
-    [[nodiscard]] double diagonal_mm() const;
-    void set_colours(const gl::Program& program) const;
+    void set_colours(const gl::Program& program, double share_per_texel) const;
     [[nodiscard]] bool projects() const { return variant_.function != RayFunction::composite; }
     [[nodiscard]] std::vector<StoredRange> visible() const;
     [[nodiscard]] std::vector<StoredRange> visible_colours() const;
@@ -80,8 +79,9 @@ class RayCastEffect final : public Effect {
     std::uint64_t parameters_key_ = 0;
     std::uint64_t source_version_ = 0;
     std::shared_ptr<const Source> source_;
+    std::shared_ptr<const Source> voxels_;     ///< the source, or the colours made of it
     std::shared_ptr<const Source> gradients_;  ///< where they are kept and needed
-    std::shared_ptr<const Source> sampled_;    ///< what the texture holds: the source or its coefficients
+    std::shared_ptr<const Source> sampled_;    ///< what the texture holds: the voxels or their coefficients
     int sampled_channel_ = 0;
     TransferFunction function_;
     std::array<std::shared_ptr<Bricks>, 4> bricks_;  ///< of the channel, or of each colour

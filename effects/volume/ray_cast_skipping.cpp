@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 
+#include "effects/volume/colours.h"
 #include "effects/volume/ray_cast_effect.h"
 #include "engine/core/hash.h"
 
@@ -61,17 +62,17 @@ std::vector<StoredRange> RayCastEffect::visible() const {
 
 /// The stored numbers of each channel of colours (effects/volume/colours.h) that are not dropped.
 std::vector<StoredRange> RayCastEffect::visible_colours() const {
-    constexpr float all = std::numeric_limits<float>::infinity();
-    constexpr double slack = 1.0;
-    std::vector<StoredRange> ranges(4, {-all, all});
-    ranges[3].low = std::numeric_limits<float>::min();  // no opacity, nothing to be seen
-    const std::vector<AccumulateParams::Channel>& channels = params_.accumulate.channels;
-    for (std::size_t c = 0; c < channels.size(); ++c) {
-        const glm::dvec2 stored = 65535.0 * channels[c].threshold;
-        StoredRange& range = ranges[channels.size() == 2 && c == 1 ? 3 : c];
-        range.low = std::max(range.low, static_cast<float>(stored.x - slack));
-        range.high = static_cast<float>(stored.y + slack);
+    const Volume& colours = sampled_->volume();
+    const TexelMap stored{colours.slope, colours.intercept};
+    const ColourLimits limits = colour_limits(params_.accumulate);
+    constexpr double slack = 1.0 / 65535.0;
+    std::vector<StoredRange> ranges;
+    for (int c = 0; c < 4; ++c) {
+        ranges.push_back({static_cast<float>(stored.texel_of(limits.low[c] - slack)),
+                          static_cast<float>(stored.texel_of(limits.high[c] + slack))});
     }
+    // No opacity, nothing to be seen.
+    ranges[3].low = std::max(ranges[3].low, std::numeric_limits<float>::min());
     return ranges;
 }
 

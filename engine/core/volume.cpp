@@ -81,6 +81,10 @@ glm::dmat4 VolumeGrid::box_to_world() const {
                                          glm::dvec4(0.0, 0.0, size.z, 0.0), glm::dvec4(box.min, 1.0));
 }
 
+double VolumeGrid::diagonal_mm() const {
+    return glm::length(glm::dvec3(box_to_world() * glm::dvec4(1.0, 1.0, 1.0, 0.0)));
+}
+
 glm::dvec3 VolumeGrid::world_of_index(const glm::dvec3& index) const {
     if (!curvilinear()) {
         return index_to_world() * glm::dvec4(index, 1.0);

@@ -44,6 +44,8 @@ struct VolumeGrid {
     /// The unit box -> world, of which the volume takes all (Cartesian: texture_to_world) or which lies
     /// closely around it in its frame.
     [[nodiscard]] glm::dmat4 box_to_world() const;
+    /// Of that box.
+    [[nodiscard]] double diagonal_mm() const;
     /// Any index -> world, and back; whole indices are voxel centres. Along a wrapping axis indices of the
     /// world lie within half the ring's gap of [0, n).
     [[nodiscard]] glm::dvec3 world_of_index(const glm::dvec3& index) const;

@@ -30,8 +30,7 @@ vec4 cubic_plane(CubicStencil s, int z) {
     return vec4(cubic_mix(r0, r1, r2, r3, s.wy).xy, cubic_slope(r0.x, r1.x, r2.x, r3.x, s.dy), 0.0);
 }
 
-// Value and derivative along x, y and z per voxel.
-vec4 cubic_jet(vec3 place) {
+CubicStencil cubic_stencil(vec3 place) {
     ivec3 size = volume_size();
     Cell cell = cell_at(place);
     Cubic w = cubic_weights(cell.a);
@@ -46,9 +45,33 @@ vec4 cubic_jet(vec3 place) {
 #ifdef COORDINATES
     s.ANGLE = on_ring(i.ANGLE + taps, size.ANGLE);
 #endif
+    return s;
+}
+
+// Value and derivative along x, y and z per voxel.
+vec4 cubic_jet(vec3 place) {
+    CubicStencil s = cubic_stencil(place);
     vec4 p0 = cubic_plane(s, s.z.x);
     vec4 p1 = cubic_plane(s, s.z.y);
     vec4 p2 = cubic_plane(s, s.z.z);
     vec4 p3 = cubic_plane(s, s.z.w);
     return vec4(cubic_mix(p0, p1, p2, p3, s.wz).xyz, cubic_slope(p0.x, p1.x, p2.x, p3.x, s.dz));
 }
+
+#ifdef COLOURS
+vec4 cubic_colour_row(CubicStencil s, int y, int z) {
+    return cubic_mix(voxel_at(ivec3(s.x.x, y, z)), voxel_at(ivec3(s.x.y, y, z)), voxel_at(ivec3(s.x.z, y, z)),
+                     voxel_at(ivec3(s.x.w, y, z)), s.wx);
+}
+
+vec4 cubic_colour_plane(CubicStencil s, int z) {
+    return cubic_mix(cubic_colour_row(s, s.y.x, z), cubic_colour_row(s, s.y.y, z), cubic_colour_row(s, s.y.z, z),
+                     cubic_colour_row(s, s.y.w, z), s.wy);
+}
+
+vec4 cubic_colour(vec3 place) {
+    CubicStencil s = cubic_stencil(place);
+    return cubic_mix(cubic_colour_plane(s, s.z.x), cubic_colour_plane(s, s.z.y), cubic_colour_plane(s, s.z.z),
+                     cubic_colour_plane(s, s.z.w), s.wz);
+}
+#endif

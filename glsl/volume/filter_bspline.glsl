@@ -2,13 +2,13 @@
 // them. The pairs' sums are at least 1/6: no quotient below is 0/0.
 
 // Trilinear fetches at x = low or high, mixed by share of high.
-float bspline_line(float low, float high, float share, vec2 yz) {
-    float a = linear_texel(vec3(low, yz));
-    float b = linear_texel(vec3(high, yz));
+VOXEL bspline_line(float low, float high, float share, vec2 yz) {
+    VOXEL a = linear_voxel(vec3(low, yz));
+    VOXEL b = linear_voxel(vec3(high, yz));
     return a + share * (b - a);
 }
 
-float sample_volume(vec3 place) {
+VOXEL SAMPLE(vec3 place) {
     vec3 size = vec3(volume_size());
     vec3 p = place * size - 0.5;
     vec3 cell = floor(p);
@@ -16,12 +16,12 @@ float sample_volume(vec3 place) {
     vec3 share = w.w2 + w.w3;
     vec3 low = (cell - 0.5 + w.w1 / (w.w0 + w.w1)) / size;
     vec3 high = (cell + 1.5 + w.w3 / share) / size;
-    float v00 = bspline_line(low.x, high.x, share.x, low.yz);
-    float v10 = bspline_line(low.x, high.x, share.x, vec2(high.y, low.z));
-    float v01 = bspline_line(low.x, high.x, share.x, vec2(low.y, high.z));
-    float v11 = bspline_line(low.x, high.x, share.x, high.yz);
-    float v0 = v00 + share.y * (v10 - v00);
-    float v1 = v01 + share.y * (v11 - v01);
+    VOXEL v00 = bspline_line(low.x, high.x, share.x, low.yz);
+    VOXEL v10 = bspline_line(low.x, high.x, share.x, vec2(high.y, low.z));
+    VOXEL v01 = bspline_line(low.x, high.x, share.x, vec2(low.y, high.z));
+    VOXEL v11 = bspline_line(low.x, high.x, share.x, high.yz);
+    VOXEL v0 = v00 + share.y * (v10 - v00);
+    VOXEL v1 = v01 + share.y * (v11 - v01);
     return v0 + share.z * (v1 - v0);
 }
 

@@ -1,6 +1,6 @@
 // Trilinear reconstruction by the texture unit, whose weights have 8 bits on most GPUs.
-float sample_volume(vec3 place) {
-    return linear_texel(place);
+VOXEL SAMPLE(vec3 place) {
+    return linear_voxel(place);
 }
 
 // The derivative along an axis is the difference between the two voxel layers beside the place.

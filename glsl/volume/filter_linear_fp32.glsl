@@ -20,9 +20,22 @@ vec4 linear_jet(vec3 place) {
                 step_y.x + a.z * (step_y.y - step_y.x), plane.y - plane.x);
 }
 
+#ifdef COLOURS
+vec4 sample_colour(vec3 place) {
+    Cell cell = cell_at(place);
+    ivec3 low = inside_volume(ivec3(cell.low));
+    ivec3 high = inside_volume(ivec3(cell.low) + 1);
+    vec4 a = mix(voxel_at(low), voxel_at(ivec3(high.x, low.yz)), cell.a.x);
+    vec4 b = mix(voxel_at(ivec3(low.x, high.y, low.z)), voxel_at(ivec3(high.xy, low.z)), cell.a.x);
+    vec4 c = mix(voxel_at(ivec3(low.xy, high.z)), voxel_at(ivec3(high.x, low.y, high.z)), cell.a.x);
+    vec4 d = mix(voxel_at(ivec3(low.x, high.yz)), voxel_at(high), cell.a.x);
+    return mix(mix(a, b, cell.a.y), mix(c, d, cell.a.y), cell.a.z);
+}
+#else
 float sample_volume(vec3 place) {
     return linear_jet(place).x;
 }
+#endif
 
 vec3 filter_gradient(vec3 place) {
     return linear_jet(place).yzw * vec3(volume_size());

@@ -1,6 +1,6 @@
 // The voxel that owns the place.
-float sample_volume(vec3 place) {
-    return texel(inside_volume(ivec3(floor(place * vec3(volume_size())))));
+VOXEL SAMPLE(vec3 place) {
+    return voxel_at(inside_volume(ivec3(floor(place * vec3(volume_size())))));
 }
 
 vec3 filter_gradient(vec3 place) {

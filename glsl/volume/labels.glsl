@@ -27,11 +27,16 @@ int label_at(vec3 local) {
     return inside ? found : 0;
 }
 
-vec4 classify_label(float value, int label) {
+// Colour and extinction in a segment.
+vec4 labelled(vec4 c, int label) {
     vec4 look = texelFetch(u_label_looks, ivec2(label, 0), 0);
     vec4 how = texelFetch(u_label_looks, ivec2(label, 1), 0);
+    return vec4(mix(c.rgb, look.rgb, look.a), c.a * how.x);
+}
+
+vec4 classify_label(float value, int label) {
 #ifdef LABEL_RAMPS
-    int row = int(how.y);
+    int row = int(texelFetch(u_label_looks, ivec2(label, 1), 0).y);
     float last = float(textureSize(u_label_ramps, 0).x - 1);
     float place = clamp(value * u_transfer_place.x + u_transfer_place.y, 0.0, last);
 #ifdef TRANSFER_LINEAR
@@ -44,5 +49,5 @@ vec4 classify_label(float value, int label) {
 #else
     vec4 c = classify(value);
 #endif
-    return vec4(mix(c.rgb, look.rgb, look.a), c.a * how.x);
+    return labelled(c, label);
 }

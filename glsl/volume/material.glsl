@@ -48,14 +48,15 @@ vec4 appearance(vec4 c, vec3 local) {
 }
 
 vec4 material(vec3 local) {
-#ifdef COLOURS
-    return colour_material(to_sample(local));
-#else
-    float value = sample_volume(to_sample(local));
+#if defined(COLOURS)
+    vec4 c = colour_material(to_sample(local));
 #ifdef LABELS
-    return appearance(classify_label(value, label_at(local)), local);
+    c = labelled(c, label_at(local));
+#endif
+#elif defined(LABELS)
+    vec4 c = classify_label(sample_volume(to_sample(local)), label_at(local));
 #else
-    return appearance(classify(value), local);
+    vec4 c = classify(sample_volume(to_sample(local)));
 #endif
-#endif
+    return appearance(c, local);
 }

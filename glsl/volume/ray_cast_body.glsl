@@ -16,11 +16,9 @@
 #else
 #include "volume/coordinates_cartesian.glsl"
 #endif
-#include "volume/storage.glsl"
+#include "volume/sample.glsl"
 #ifdef COLOURS
 #include "volume/colours.glsl"
-#else
-#include "volume/sample.glsl"
 #endif
 #include "volume/classify.glsl"
 #include "volume/material.glsl"

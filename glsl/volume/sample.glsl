@@ -22,6 +22,11 @@
 #else
 #include "volume/filter_linear.glsl"
 #endif
+#ifdef COLOURS
+float sample_volume(vec3 place) {
+    return sample_colour(place).a;
+}
+#endif
 
 #if defined(GRADIENT_KEPT) && !defined(STORAGE_ATLAS)
 uniform sampler3D u_gradients;   // central differences at the voxels: effects/volume/gradients.h

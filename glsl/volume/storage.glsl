@@ -1,11 +1,16 @@
 // Where voxels are read: a 3-D texture, or slices tiled over the layers of an array (STORAGE_ATLAS), for what exceeds
-// the limit of 3-D textures: effects/volume/atlas.h. A voxel is a number, or a colour (COLOURS).
+// the limit of 3-D textures: effects/volume/atlas.h. A voxel is a number, or a colour (COLOURS), of which derivatives
+// take the opacity.
 #ifdef COLOURS
 #define VOXEL vec4
 #define CHANNELS rgba
+#define NUMBER(voxel) (voxel).a
+#define SAMPLE sample_colour  // what a filter is called
 #else
 #define VOXEL float
 #define CHANNELS r
+#define NUMBER(voxel) (voxel)
+#define SAMPLE sample_volume
 #endif
 #ifdef COORDINATES
 // Curvilinear: first and last voxel along the angle may be neighbours.
@@ -29,6 +34,7 @@ ivec4 on_ring(ivec4 voxels, int count) {
 #endif
 
 #ifdef STORAGE_ATLAS
+#include "volume/atlas.glsl"
 uniform sampler2DArray u_volume;
 uniform ivec3 u_volume_size;  // voxels
 uniform ivec2 u_atlas_tiles;  // slices beside and above each other on a layer
@@ -37,38 +43,17 @@ ivec3 volume_size() {
     return u_volume_size;
 }
 
-// First texel of a slice, behind its border, and its layer.
-ivec3 atlas_tile(int slice) {
-    int row = slice / u_atlas_tiles.x;
-    int layer = row / u_atlas_tiles.y;
-    ivec2 tile = ivec2(slice - row * u_atlas_tiles.x, row - layer * u_atlas_tiles.y);
-    return ivec3(tile * (u_volume_size.xy + 2) + 1, layer);
-}
-
-VOXEL texel(ivec3 voxel) {
-    ivec3 tile = atlas_tile(voxel.z);
+VOXEL voxel_at(ivec3 voxel) {
+    ivec3 tile = atlas_tile(u_volume_size, u_atlas_tiles, voxel.z);
     return texelFetch(u_volume, ivec3(tile.xy + voxel.xy, tile.z), 0).CHANNELS;
 }
 
-VOXEL atlas_slice(vec2 place, int slice) {
-    ivec3 tile = atlas_tile(clamp(slice, 0, u_volume_size.z - 1));
-    vec2 page = vec2(textureSize(u_volume, 0).xy);
-    return textureLod(u_volume, vec3((vec2(tile.xy) + place) / page, float(tile.z)), 0.0).CHANNELS;
-}
-
-VOXEL linear_texel(vec3 place) {
-    vec3 size = vec3(u_volume_size);
-    vec3 p = place * size;
-    // The border around each slice takes what rounding moves beyond the outermost centres.
-    vec2 inside = clamp(p.xy, vec2(0.5), size.xy - 0.5);
+VOXEL linear_voxel(vec3 place) {
 #ifdef COORDINATES
-    // A ring's border holds the other end.
-    inside.ANGLE = u_ring ? p.ANGLE - size.ANGLE * floor(p.ANGLE / size.ANGLE) : inside.ANGLE;
+    return linear_in_atlas(u_volume, u_volume_size, u_atlas_tiles, place, u_ring).CHANNELS;
+#else
+    return linear_in_atlas(u_volume, u_volume_size, u_atlas_tiles, place, false).CHANNELS;
 #endif
-    float below = floor(p.z - 0.5);
-    VOXEL low = atlas_slice(inside, int(below));
-    VOXEL high = atlas_slice(inside, int(below) + 1);
-    return low + (p.z - 0.5 - below) * (high - low);
 }
 #else
 uniform sampler3D u_volume;
@@ -78,7 +63,7 @@ ivec3 volume_size() {
 }
 
 // One voxel, which must be inside.
-VOXEL texel(ivec3 voxel) {
+VOXEL voxel_at(ivec3 voxel) {
     return texelFetch(u_volume, voxel, 0).CHANNELS;
 }
 
@@ -94,10 +79,18 @@ vec3 within_texture(vec3 place) {
 }
 
 // Trilinear by the texture unit; beyond the outermost centres their value goes on.
-VOXEL linear_texel(vec3 place) {
+VOXEL linear_voxel(vec3 place) {
     return textureLod(u_volume, within_texture(place), 0.0).CHANNELS;
 }
 #endif
+
+float texel(ivec3 voxel) {
+    return NUMBER(voxel_at(voxel));
+}
+
+float linear_texel(vec3 place) {
+    return NUMBER(linear_voxel(place));
+}
 
 // The voxel at or below a place along each axis, and the way from its centre to the next one's, in [0, 1].
 // The place is split, so that its product with a size up to 8192 is exact and the whole part costs the fraction no

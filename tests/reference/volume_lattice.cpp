@@ -231,10 +231,13 @@ glm::dvec4 accumulate(std::span<const Field> channels, const Ray& ray, const Int
             continue;
         }
         const glm::dvec4 rgba = rgba_of(std::span(values).first(count));
-        const double a =
-            std::clamp(rgba.a, 0.0, 1.0) * rule.opacity / rule.samples * (slab.length() / step_mm);
+        double a = std::clamp(rgba.a, 0.0, 1.0) * rule.opacity / rule.samples * (slab.length() / step_mm);
+        glm::dvec3 colour = (glm::dvec3(rgba) + rule.brightness) * rule.contrast;
+        if (rule.look) {
+            rule.look(colour, a, ray.at(slab.sample));
+        }
         const double weight = (1.0 - sum.a) * a;
-        sum += weight * glm::dvec4((glm::dvec3(rgba) + rule.brightness) * rule.contrast, 1.0);
+        sum += weight * glm::dvec4(colour, 1.0);
         if (sum.a > rule.stop_alpha) {
             break;
         }

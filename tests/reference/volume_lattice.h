@@ -87,6 +87,8 @@ struct Accumulate {
     glm::dvec4 low{-1e300};  ///< per channel, ends included
     glm::dvec4 high{1e300};
     double stop_alpha = 1.0;
+    /// What a place looks like: changes the colour and, per slab, the opacity. Called with the world's mm.
+    std::function<void(glm::dvec3& colour, double& opacity, const glm::dvec3& world_mm)> look;
 };
 /// One field per channel, all with the same box. 1 channel v: colour (v, v, v), alpha v. 2 (v, a): colour
 /// (v, v, v), alpha a. 3 (r, g, b): alpha (r + g + b) / 3. 4: RGBA. alpha is clamped to [0, 1].

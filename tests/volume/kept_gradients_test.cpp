@@ -6,6 +6,7 @@
 
 #include "engine/core/error.h"
 #include "tests/volume/mixed_scene.h"
+#include "tests/volume/sector_stage.h"
 #include "tests/volume/volume_stage.h"
 
 namespace viscera::test {
@@ -90,6 +91,43 @@ TEST_F(KeptGradients, FollowALiveVolume) {
     EXPECT_FALSE(same_bits(before, after));
     VolumeStage fresh;
     EXPECT_LE(difference(after.image, fresh.cast(LiveVolume(head.volume()), p, look_).image).max, 2e-3);
+}
+
+/// Around rings, past the ends of sectors, and where a box that changes touches a seam.
+TEST_F(KeptGradients, OfSectorsAreCentralDifferencesAcrossTheSeam) {
+    nlohmann::json p{{"transfer_function",
+                      {{"points",
+                        {{{"value", 0}, {"opacity", 0.0}, {"colour", {0.8, 0.5, 0.4}}},
+                         {{"value", 1}, {"opacity", 0.3}, {"colour", {0.9, 0.6, 0.5}}}}}}},
+                     {"shading", {{"enabled", true}}},
+                     {"sampling", {{"filter", "linear_fp32"}, {"gradient", "central"}}}};
+    constexpr std::array<std::string_view, 4> wanted{"ring", "gap", "ball", "bitten"};
+    for (const NamedShape& named : some_shapes()) {
+        if (std::ranges::find(wanted, named.name) == wanted.end()) {
+            continue;
+        }
+        SCOPED_TRACE(named.name);
+        const bool cylinder = named.shape.kind == VolumeKind::cylindrical;
+        LiveVolume volume(
+            sector_noise(named.shape, cylinder ? glm::ivec3(14, 30, 12) : glm::ivec3(30, 16, 14), 11));
+        const glm::dvec3 centre = sector_centre(volume.volume().grid);
+        look_ = {.eye_mm = centre + glm::dvec3(110, -150, 80), .target_mm = centre, .fov_deg = 34};
+        p["sampling"]["gradient"] = "central";
+        const Shot central = stage_.cast(volume, p, look_);
+        p["sampling"]["gradient"] = "precomputed";
+        const Shot kept = stage_.cast(volume, p, look_);
+        EXPECT_LE(difference(central.image, kept.image).max, 5e-4);
+        VoxelBox change{glm::ivec3(0), volume.volume().grid.dims};
+        change.size[cylinder ? 1 : 0] = 2;  // first angles, which a ring's last ones border on
+        const std::vector<float> values(
+            static_cast<std::size_t>(change.size.x) * static_cast<std::size_t>(change.size.y * change.size.z),
+            0.9F);
+        volume.update(change, std::as_bytes(std::span(values)));
+        const Shot after = stage_.cast_again(volume, kept.view, glm::ivec2(64));
+        EXPECT_FALSE(same_bits(kept, after));
+        const Shot anew = stage_.cast(LiveVolume(volume.volume()), p, look_);
+        EXPECT_LE(difference(after.image, anew.image).max, 1e-3);
+    }
 }
 
 TEST_F(KeptGradients, AreNotUsedWithAnAtlasAndRefusedWithCubicFilters) {

@@ -5,6 +5,7 @@
 
 #include "effects/volume/classic.h"
 #include "effects/volume/clip.h"
+#include "effects/volume/colours.h"
 #include "effects/volume/labels.h"
 #include "effects/volume/light_volume.h"
 #include "effects/volume/overlay.h"
@@ -126,8 +127,8 @@ Volume block(int n, std::uint8_t value) {
 TEST(LightVolume, a_homogeneous_block_lets_through_by_its_depth) {
     const Volume volume = block(32, 100);
     const glm::dmat4 to_world = volume.grid.texture_to_world();  // 32 mm
-    const ExtinctionGrid grid =
-        extinction_grid(volume, 0, to_world, 16, [](double value) { return value * 1e-3; });
+    const ExtinctionGrid grid = extinction_grid(
+        volume.grid.dims, to_world, 16, of_values(volume, 0, [](double value) { return value * 1e-3; }));
     ASSERT_EQ(grid.dims, glm::ivec3(16));
     const double cell_mm = 2.0;
     for (const double z : {0.1, 0.5, 0.9}) {
@@ -141,6 +142,21 @@ TEST(LightVolume, a_homogeneous_block_lets_through_by_its_depth) {
     EXPECT_EQ(light.front().y, 1.0F);
 }
 
+TEST(LightVolume, colours_take_light_by_their_opacity) {
+    Volume colours = volume_of<std::uint16_t>({3, 1, 1}, ScalarType::u16,
+                                              {65535, 0, 0, 13107, 0, 65535, 0, 13107, 65535, 0, 0, 0});
+    colours.channels = 4;
+    colours.slope = 1.0 / 65535.0;
+    AccumulateParams params{.opacity = 128.0, .samples = 256.0};
+    params.channels.resize(4);
+    params.channels[1].threshold = {0.0, 0.9};
+    const VoxelExtinction of = colour_extinction(colours, params, 64.0);
+    // Opacity 0.2 * 0.5 in a quarter of a millimetre.
+    EXPECT_NEAR(of({0, 0, 0}), -std::log(0.9) * 4.0, 1e-12);
+    EXPECT_EQ(of({1, 0, 0}), 0.0);
+    EXPECT_EQ(of({2, 0, 0}), 0.0);
+}
+
 TEST(LightVolume, agrees_with_brute_force) {
     std::vector<std::uint8_t> stored;
     for (int i = 0; i < 24 * 24 * 24; ++i) {
@@ -148,8 +164,9 @@ TEST(LightVolume, agrees_with_brute_force) {
         stored.push_back(static_cast<std::uint8_t>(200.0 * std::exp(-glm::dot(p, p) / 40.0)));
     }
     const Volume volume = volume_of<std::uint8_t>(glm::ivec3(24), ScalarType::u8, stored);
-    const ExtinctionGrid grid = extinction_grid(volume, 0, volume.grid.texture_to_world(), 24,
-                                                [](double value) { return value * 1e-3; });
+    const ExtinctionGrid grid =
+        extinction_grid(volume.grid.dims, volume.grid.texture_to_world(), 24,
+                        of_values(volume, 0, [](double value) { return value * 1e-3; }));
     const glm::dvec3 towards = glm::normalize(glm::dvec3(1.0, 2.0, 3.0));
     double dimmest = 1.0;
     for (const glm::dvec3 place : {glm::dvec3(0.5), glm::dvec3(0.3, 0.2, 0.1), glm::dvec3(0.9)}) {

@@ -183,8 +183,8 @@ TEST(SectorLight, ItsGridIsThatOfABoxWithTheSameValues) {
         const Volume volume = sector_noise(named.shape, dims_of(named.shape), 5);
         const VolumeGrid& sector = volume.grid;
         const auto extinction = [](double value) { return 0.02 * value; };
-        const volume::ExtinctionGrid got =
-            volume::extinction_in_box(volume, 0, sector.box_to_world(), 20, extinction);
+        const volume::ExtinctionGrid got = volume::extinction_in_box(
+            sector, sector.box_to_world(), 20, volume::of_values(volume, 0, extinction));
         Volume box = float_volume(2 * got.dims, glm::dvec3(1.0), [](const glm::dvec3&) { return 0.0; });
         auto* const values = reinterpret_cast<float*>(box.voxels.data());
         const glm::dmat4 to_frame = glm::inverse(sector.frame_to_world()) * sector.box_to_world();
@@ -197,9 +197,9 @@ TEST(SectorLight, ItsGridIsThatOfABoxWithTheSameValues) {
             values[i] = sample ? static_cast<float>(volume.stored(*sample)) : 0.0F;
         }
         // A box that is as wide in all directions as the cells are many has as many cells.
-        const volume::ExtinctionGrid wanted =
-            volume::extinction_grid(box, 0, glm::scale(glm::dmat4(1.0), glm::dvec3(got.dims)),
-                                    std::max({got.dims.x, got.dims.y, got.dims.z}), extinction);
+        const volume::ExtinctionGrid wanted = volume::extinction_grid(
+            box.grid.dims, glm::scale(glm::dmat4(1.0), glm::dvec3(got.dims)),
+            std::max({got.dims.x, got.dims.y, got.dims.z}), volume::of_values(box, 0, extinction));
         ASSERT_EQ(wanted.dims, got.dims);
         std::size_t other = 0;
         double most = 0.0;
@@ -232,8 +232,8 @@ TEST(SectorLight, IsLookedUpWhereTheRayIs) {
                         {{"ambient_occlusion", how.ambient_occlusion}, {"resolution", how.resolution}}}}}};
         const Shot shot = stage.cast(volume, p, look_at(sector), glm::ivec2(40));
         const glm::dmat4 box = sector.box_to_world();
-        volume::ExtinctionGrid grid = volume::extinction_in_box(volume.volume(), 0, box, how.resolution,
-                                                                [](double) { return -std::log(1e-7); });
+        volume::ExtinctionGrid grid = volume::extinction_in_box(
+            sector, box, how.resolution, [](const glm::ivec3&) { return -std::log(1e-7); });
         const std::vector<glm::vec2> light = volume::light_volume(grid, how, glm::dvec4(0, 0, 1, 0));
         // The same grid between cells as the texture unit has it.
         std::ranges::transform(light, grid.per_mm.begin(), [](const glm::vec2& cell) { return cell.y; });

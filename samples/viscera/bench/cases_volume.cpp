@@ -70,6 +70,27 @@ void against_ceiling(Lab& lab, ComputeUse compute, const std::string& group) {
     }
 }
 
+/// Colours as they are against one of their channels.
+void of_colours(Lab& lab) {
+    VolumeScene scene(lab, "cryosections");
+    scene.change({{"shading", {{"enabled", false}}}, {"sampling", sampling("midpoint", 1.0, true)}});
+    const json lit{{"shading", {{"enabled", true}}}};
+    const std::vector<Judged> judged{
+        {{"accumulate, one channel", {{"accumulate", {{"channels", json::array()}}}}}, exact_composite()},
+        {{"accumulate, three channels", json::object()}, exact_composite()},
+        {{"accumulate, three channels, shaded", lit}, exact_composite()}};
+    const std::vector<Quality> qualities = judge(lab, scene, judged, judged_scale);
+    std::vector<Variant> variants;
+    for (const Judged& one : judged) {
+        variants.push_back(one.variant);
+    }
+    Stage stage(lab, scene.json(variants, "rgba16f"));
+    stage.run(nudge);
+    for (std::size_t i = 0; i < judged.size(); ++i) {
+        lab.add(quality_row("volume, colours", judged[i].variant, qualities[i], stage.pass(key(i))));
+    }
+}
+
 }  // namespace
 
 void run_volume(Lab& lab) {
@@ -77,6 +98,7 @@ void run_volume(Lab& lab) {
     if (lab.by_compute()) {
         against_ceiling(lab, ComputeUse::on, "volume, compute shader");
     }
+    of_colours(lab);
 }
 
 void run_steps(Lab& lab) {
