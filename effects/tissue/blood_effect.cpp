@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 
 #include "effects/tissue/baked_surface.h"
+#include "effects/tissue/blood_programs.h"
 #include "effects/tissue/surface_search.h"
 #include "engine/core/error.h"
 #include "engine/core/hash.h"
@@ -39,7 +41,7 @@ Port read(const char* name, const char* target, const char* doc, bool optional =
 
 }  // namespace
 
-BloodEffect::BloodEffect() : programs_(BloodGpu::programs()) {
+BloodEffect::BloodEffect() : programs_(blood_programs()) {
     programs_.push_back({"tissue/blood_tile.vert", "tissue/blood_look.frag", {"CHANGED"}});
 }
 
@@ -242,6 +244,9 @@ void BloodEffect::update_surface(const Pass& pass) {
         return;
     }
     const bool empty = state.surface_key == 0;
+    if (empty) {
+        state.expected.clear();
+    }
     state.surface_key = surface_key_;
     if (state.seam_key != mesh_->key()) {
         state.seam_key = mesh_->key();
@@ -250,11 +255,45 @@ void BloodEffect::update_surface(const Pass& pass) {
     state.gpu->take_surface(pass, medium_, empty);
     if (state.bled) {
         state.moving = true;
+        expect_drops();
         state.gpu->look_at_tiles(pass, medium_, state.ring.alive(), true);
         state.looked_at = state.step;
         state.looked_run = state.steps_run;
         state.disturbed_at = ++state.looks + 1;
     }
+}
+
+double BloodEffect::drop_radius_mm(double volume_mm3) const {
+    return std::cbrt(volume_mm3 * 2.0 / (std::numbers::pi * params_.liquid.drop_aspect));
+}
+
+bool BloodEffect::is_expected(std::size_t wound, double reach_mm) const {
+    const std::vector<BloodState::Expected>& expected = state_->expected;
+    return wound < expected.size() && expected[wound].reach_mm >= reach_mm &&
+           expected[wound].uv == places_[wound].uv;
+}
+
+void BloodEffect::expect_drops() {
+    BloodState& state = *state_;
+    const double dt = 1.0 / params_.liquid.steps_per_s;
+    const double from = static_cast<double>(state.step) * dt;
+    const double to = from + static_cast<double>(steps_per_look) * dt;
+    expected_.clear();
+    state.expected.assign(places_.size(), {});
+    for (std::size_t i = 0; i < std::min(places_.size(), wounds_.size()); ++i) {
+        const WoundParams& wound = wounds_[i];
+        if (!places_[i].found || wound.kind == BleedingKind::jet || wound.start_s >= to ||
+            wound.stop_s <= from) {
+            continue;
+        }
+        const double drop = DropMeter::drop_volume(wound.rate_mm3_s * dt, params_.liquid.drop_mm3);
+        const double reach = wound.radius_mm + drop_radius_mm(drop);
+        state.expected[i] = {places_[i].uv, reach};
+        // A drop as large as the place is marked as if it were there.
+        const double volume = 0.5 * std::numbers::pi * params_.liquid.drop_aspect * reach * reach * reach;
+        expected_.emplace_back(places_[i].uv, static_cast<float>(volume), 0.0F);
+    }
+    state.gpu->expect(expected_);
 }
 
 void BloodEffect::collect_drops(std::int64_t step) {
@@ -274,9 +313,11 @@ void BloodEffect::collect_drops(std::int64_t step) {
             continue;
         }
         for (int n = 0; n < drops.count; ++n) {
-            spawns_.push_back({.uv = places_[i].uv,
-                               .volume_mm3 = static_cast<float>(drops.volume_mm3),
-                               .radius_mm = static_cast<float>(wound.radius_mm)});
+            spawns_.push_back(
+                {.uv = places_[i].uv,
+                 .volume_mm3 = static_cast<float>(drops.volume_mm3),
+                 .radius_mm = static_cast<float>(wound.radius_mm),
+                 .expected = is_expected(i, wound.radius_mm + drop_radius_mm(drops.volume_mm3))});
         }
     }
     fly(dt);
@@ -329,6 +370,7 @@ void BloodEffect::run_step(const Pass& pass) {
     const bool due = step != state.looked_at &&
                      (step % steps_per_look == 0 || state.steps_run - 1 - state.looked_run >= steps_per_look);
     if (due || medium_.tools.size() != state.tool_count) {
+        expect_drops();
         state.gpu->look_at_tiles(pass, medium_, state.ring.alive(), !medium_.tools.empty());
         state.looked_at = step;
         state.looked_run = state.steps_run - 1;
@@ -353,9 +395,11 @@ void BloodEffect::draw(const Pass& pass) {
     }
     set_medium();
     set_tools(state.step);
-    update_surface(pass);
     if (target_step_ > state.step) {
         find_places();
+    }
+    update_surface(pass);
+    if (target_step_ > state.step) {
         const auto gap =
             std::max(static_cast<std::int64_t>(longest_gap_s * state.steps_per_s), std::int64_t{1});
         state.step = std::max(state.step, target_step_ - gap);
@@ -383,7 +427,6 @@ void BloodEffect::show(const Pass& pass) {
     const Shown before = !pass.kept() ? Shown::nothing : same ? Shown::last : Shown::unknown;
     state.gpu->begin_picture(pass, medium_, state.ring.alive(), before);
     pass.bind_target();  // the steps draw elsewhere
-    pass.raster(cover_state);
     const gl::Program& program = pass.use(programs_.size() - 1);
     pass.bind(program, "u_relief", state.gpu->relief(), gl::Filter::nearest);
     pass.bind(program, "u_metric", "metric");

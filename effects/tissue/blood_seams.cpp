@@ -1,62 +1,81 @@
 #include "effects/tissue/blood_seams.h"
 
 #include <algorithm>
-#include <array>
+#include <cstddef>
 #include <iterator>
+#include <tuple>
 #include <vector>
 
 namespace viscera::tissue {
 namespace {
 
-SeamPairs pairs_of(const gl::Functions& gl, std::span<const SeamLink> links, std::span<const SeamJump> jumps,
-                   int size, int side) {
-    std::vector<std::array<int, 4>> found;
-    found.reserve(2 * links.size() + jumps.size());
-    const auto add = [&](int from, int to) {
-        found.push_back({from % size / side, from / size / side, to % size / side, to / size / side});
+constexpr std::size_t region_side = 32;  // [texels]
+constexpr std::size_t row = 1024;        // of a list
+
+/// Cells at seams in the order in which they are computed: those of one region together, which are stepped
+/// or not, and of these those with as many parts, since a group of fragments takes as long as the longest.
+std::vector<std::size_t> cells_in_order(std::span<const float> first_of_cell, std::span<const SeamLink> parts,
+                                        std::size_t size) {
+    struct Cell {
+        std::size_t region = 0;
+        std::size_t parts = 0;
+        std::size_t index = 0;
     };
-    for (const SeamLink& link : links) {
-        // What flows one way must be seen from the other side as well.
-        add(static_cast<int>(link.from), static_cast<int>(link.to));
-        add(static_cast<int>(link.to), static_cast<int>(link.from));
+    std::vector<Cell> cells;
+    for (std::size_t i = 0; i < first_of_cell.size(); ++i) {
+        if (first_of_cell[i] >= 0.0F) {
+            const auto first = static_cast<std::size_t>(first_of_cell[i]);
+            std::size_t last = first;
+            while (parts[last].side < 4.0F) {
+                ++last;
+            }
+            cells.push_back({(i / size / region_side) * size + i % size / region_side, last - first, i});
+        }
     }
-    // A drop leaves blood where the gutter below it leads.
-    for (const SeamJump& jump : jumps) {
-        add(jump.gutter, jump.to);
-    }
-    std::ranges::sort(found);
-    found.erase(std::ranges::unique(found).begin(), found.end());
-    std::vector<glm::vec4> texels;
-    std::ranges::transform(found, std::back_inserter(texels), [](const std::array<int, 4>& pair) {
-        return glm::vec4(glm::ivec4(pair[0], pair[1], pair[2], pair[3]));
-    });
-    SeamPairs pairs{.count = static_cast<int>(found.size())};
-    pairs.list.upload(gl, texels, "squares that seams join");
-    return pairs;
+    std::ranges::sort(cells, {},
+                      [](const Cell& cell) { return std::tuple(cell.region, cell.parts, cell.index); });
+    std::vector<std::size_t> order(cells.size());
+    std::ranges::transform(cells, order.begin(), &Cell::index);
+    return order;
+}
+
+/// Place in a list of the n-th fragment: software renderers compute 4 x 2 of them at once.
+std::size_t place_of(std::size_t n) {
+    const std::size_t in_rows = n % (2 * row);
+    return (n / (2 * row) * 2 + (n % 8) / 4) * row + in_rows / 8 * 4 + n % 4;
 }
 
 }  // namespace
 
-BloodSeams make_seams(const gl::Functions& gl, std::span<const SeamLink> links,
-                      std::span<const SeamJump> jumps, int size, int tile_side, int block_side) {
-    std::vector<float> first_of_cell(static_cast<std::size_t>(size) * static_cast<std::size_t>(size));
-    std::vector<glm::vec4> by_cell;
-    std::ranges::transform(
-        links_by_cell(links, first_of_cell), std::back_inserter(by_cell),
-        [](const SeamLink& link) { return glm::vec4(link.from, link.to, link.side, link.share); });
-    gl::Texture first = gl::Texture::make_2d(gl, size, size, PixelFormat::r32f, "cells at seams");
-    first.upload(std::as_bytes(std::span(first_of_cell)));
-    ListTexture listed;
-    listed.upload(gl, by_cell, "parts of seams");
-    gl::Texture pulls = gl::Texture::make_2d(gl, listed.texture().width(), listed.rows(),
+BloodSeams make_seams(const gl::Functions& gl, std::span<const SeamLink> links, int size) {
+    const auto width = static_cast<std::size_t>(size);
+    std::vector<float> place_of_cell(width * width);
+    const std::vector<SeamLink> parts = links_by_cell(links, place_of_cell);
+    std::vector<glm::vec4> part_items;
+    std::ranges::transform(parts, std::back_inserter(part_items), [](const SeamLink& link) {
+        return glm::vec4(link.from, link.to, link.side, link.share);
+    });
+    const std::vector<std::size_t> order = cells_in_order(place_of_cell, parts, width);
+    std::vector<glm::vec4> cells((order.size() + 2 * row - 1) / (2 * row) * (2 * row), glm::vec4(0.0F));
+    for (std::size_t n = 0; n < order.size(); ++n) {
+        const std::size_t cell = order[n];
+        cells[place_of(n)] = {cell % width, cell / width, place_of_cell[cell], 1.0F};
+        place_of_cell[cell] = static_cast<float>(place_of(n));
+    }
+    gl::Texture places = gl::Texture::make_2d(gl, size, size, PixelFormat::r32f, "cells at seams");
+    places.upload(std::as_bytes(std::span(place_of_cell)));
+    ListTexture cell_list;
+    cell_list.upload(gl, cells, "cells at seams");
+    ListTexture link_list;
+    link_list.upload(gl, part_items, "parts of seams");
+    gl::Texture pulls = gl::Texture::make_2d(gl, link_list.texture().width(), link_list.rows(),
                                              PixelFormat::rgba32f, "fall across seams");
+    gl::Texture came = gl::Texture::make_2d(gl, cell_list.texture().width(), cell_list.rows(),
+                                            PixelFormat::r32f, "what comes across seams");
     gl::Framebuffer pulls_target(gl, pulls, "fall across seams");
-    return {pairs_of(gl, links, jumps, size, tile_side),
-            pairs_of(gl, links, jumps, size, block_side),
-            std::move(first),
-            std::move(listed),
-            std::move(pulls),
-            std::move(pulls_target)};
+    gl::Framebuffer came_target(gl, came, "what comes across seams");
+    return {std::move(places),       std::move(cell_list), std::move(link_list),   std::move(pulls),
+            std::move(pulls_target), std::move(came),      std::move(came_target), links.empty()};
 }
 
 }  // namespace viscera::tissue

@@ -9,26 +9,19 @@
 
 namespace viscera::tissue {
 
-/// Squares of a texture that seams join, each pair once: x, y here, x, y across.
-struct SeamPairs {
-    ListTexture list;
-    int count = 0;
-};
-
-/// The seams of a surface as the shaders of blood read them.
+/// The seams of a surface as the shaders of the film read them.
 struct BloodSeams {
-    SeamPairs tiles;
-    SeamPairs blocks;
-    gl::Texture first;  ///< by cell: where its links begin, or -1
-    ListTexture links;  ///< of links_by_cell()
-    gl::Texture pulls;  ///< what drives a film through each link: of blood_link.frag
+    gl::Texture place_of_cell;  ///< of a texel: where its cell stands in `cells`, or -1
+    ListTexture cells;          ///< at seams: x, y, where its links begin, 1
+    ListTexture links;          ///< of links_by_cell()
+    gl::Texture pulls;          ///< what drives a film through each link: of blood_link.frag
     gl::Framebuffer pulls_target;
-
-    [[nodiscard]] bool empty() const { return tiles.count == 0; }
+    gl::Texture came;  ///< into each of `cells` in a step [mm]
+    gl::Framebuffer came_target;
+    bool empty = true;
 };
 
-/// `size`: texels along each side of the bake; `tile_side`, `block_side`: of the squares [texels].
-[[nodiscard]] BloodSeams make_seams(const gl::Functions& gl, std::span<const SeamLink> links,
-                                    std::span<const SeamJump> jumps, int size, int tile_side, int block_side);
+/// `size`: texels along each side of the bake.
+[[nodiscard]] BloodSeams make_seams(const gl::Functions& gl, std::span<const SeamLink> links, int size);
 
 }  // namespace viscera::tissue

@@ -127,9 +127,13 @@ glm::vec2 tool_power(const CleanerParams& tool, double dt_s) {
     return {static_cast<float>(tool.rate * dt_s / volume), 0.0F};
 }
 
+double DropMeter::drop_volume(double volume_mm3, double drop_mm3) {
+    return std::max(drop_mm3, volume_mm3 / most_drops_per_step);
+}
+
 DropMeter::Drops DropMeter::flow(double volume_mm3, double drop_mm3) {
     held_mm3_ += volume_mm3;
-    const double volume = std::max(drop_mm3, volume_mm3 / most_drops_per_step);
+    const double volume = drop_volume(volume_mm3, drop_mm3);
     const int count = std::clamp(static_cast<int>(held_mm3_ / volume), 0, most_drops_per_step + 1);
     held_mm3_ -= count * volume;
     return {count, volume};

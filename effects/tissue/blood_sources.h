@@ -42,6 +42,8 @@ class DropMeter {
         int count = 0;
         double volume_mm3 = 0.0;
     };
+    /// Of each drop, where as much flows in each step.
+    [[nodiscard]] static double drop_volume(double volume_mm3, double drop_mm3);
     [[nodiscard]] Drops flow(double volume_mm3, double drop_mm3);
     void clear() { held_mm3_ = 0.0; }
 

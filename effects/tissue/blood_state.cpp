@@ -61,6 +61,7 @@ void BloodState::begin_anew(std::int64_t at, double rate, double drop_life_s) {
     steps_run = looked_run = 0;
     ring.begin(0, static_cast<std::int64_t>(std::ceil((drop_life_s + end_of_life_s) * rate)) + 2);
     meters.clear();
+    expected.clear();
     seed = 0;
     tool_count = 0;
     jets.clear();

@@ -1,7 +1,7 @@
 #version 330 core
 #include "tissue/blood_place.glsl"
 #include "tissue/blood_drop.glsl"
-// A drop as it is seen: a quad around it in texture space, and another where a seam cuts it. One that is narrower than three texels is
+// A drop as it is seen: a point around it in texture space, and one for each of four ways in which a seam cuts it. One that is narrower than three texels is
 // drawn as wide as they are, and so much flatter: texels that sample it here and there would show dots.
 uniform sampler2D u_drops;
 uniform sampler2D u_position;
@@ -10,7 +10,9 @@ uniform int u_first;
 flat out vec4 v_cap;      // place [mm], radius [mm]
 flat out float v_height;  // in the middle [mm]
 
-const float farthest = 24.0;  // [texels]
+const int points = 5;
+const float farthest = 48.0;     // that a drop is drawn [texels]
+const float gutter_width = 4.0;  // at least, so that no seam lies between two looks [texels]
 
 vec2 extent_of(ivec2 texel, float radius) {
     vec4 metric = texelFetch(u_metric, texel, 0);
@@ -36,9 +38,10 @@ vec3 world_at(vec2 texel) {
 
 void main() {
     ivec2 ring = textureSize(u_drops, 0);
-    int index = (u_first + gl_InstanceID / 2) % (ring.x * ring.y);
+    int index = (u_first + gl_VertexID / points) % (ring.x * ring.y);
     vec4 drop = texelFetch(u_drops, ivec2(index % ring.x, index / ring.x), 0);
     gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+    gl_PointSize = 1.0;
     v_cap = vec4(0.0);
     v_height = 0.0;
     if (!(drop.z > 0.0)) {
@@ -53,22 +56,24 @@ void main() {
     v_height = u_drop.x * own * (own * own) / (radius * radius);
     v_cap = vec4(world_at(centre), radius);
     vec2 extent = extent_of(at, radius);
-    bool drawn = true;
-    if ((gl_InstanceID & 1) == 1) {
-        drawn = false;
-        for (int i = 0; i < 12; ++i) {
-            vec2 way = vec2(i % 4 < 2 ? float(1 - 2 * (i % 4)) : 0.0, i % 4 < 2 ? 0.0 : float(5 - 2 * (i % 4)));
-            vec2 probe = centre + way * extent * (1.0 - float(i / 4) * 0.3);
-            ivec2 probed = clamp(ivec2(floor(probe)), ivec2(0), size - 1);
-            if (!drawn && texelFetch(u_film, probed, 0).w < 0.0) {
-                centre = texelFetch(u_right, probed, 0).xy + 0.5;
-                drawn = true;
-            }
+    int way = gl_VertexID % points - 1;
+    bool drawn = way < 0;
+    if (!drawn) {
+        vec2 towards = way < 2 ? vec2(float(1 - 2 * way), 0.0) : vec2(0.0, float(5 - 2 * way));
+        float far = dot(abs(towards), extent);
+        float next = min(gutter_width, far);
+        bool more = true;
+        while (more) {
+            ivec2 probed = clamp(ivec2(floor(centre + next * towards)), ivec2(0), size - 1);
+            drawn = texelFetch(u_film, probed, 0).w < 0.0;
+            centre = drawn ? texelFetch(u_right, probed, 0).xy + 0.5 : centre;
+            more = !drawn && next < far;
+            next = min(next + gutter_width, far);
         }
         extent = 2.0 * extent_of(clamp(ivec2(floor(centre)), ivec2(0), size - 1), radius);
     }
     if (drawn) {
-        vec2 corner = vec2(float(gl_VertexID & 1), float(gl_VertexID >> 1)) * 2.0 - 1.0;
-        gl_Position = vec4(2.0 * (centre + corner * extent) / vec2(size) - 1.0, 0.0, 1.0);
+        gl_PointSize = 2.0 * max(extent.x, extent.y);
+        gl_Position = vec4(2.0 * centre / vec2(size) - 1.0, 0.0, 1.0);
     }
 }

@@ -1,5 +1,6 @@
 #version 330 core
 #include "tissue/blood_place.glsl"
+#include "tissue/blood_plan.glsl"
 #include "tissue/blood_drop.glsl"
 // Lays what drops leave behind onto the film: four points for each drop within its outline, another four in each step, so that in time
 // all of the outline is covered alike. A point changes one texel by the volume over that texel's area: no volume is lost, whatever the
@@ -34,7 +35,7 @@ void main() {
             float angle = 6.2831853 * (drop_noise(uint(index), uint(u_salt) + 77777u) + 0.38196601 * float(k));
             vec2 offset = clamp(texels_of(r * vec2(cos(angle), sin(angle)), metric), vec2(-12.0), vec2(12.0));
             vec3 to = place_on_surface(at + offset);
-            at = to.z > 0.0 ? to.xy : at;
+            at = to.z > 0.0 && steps_at(ivec2(floor(to.xy))) ? to.xy : at;
         }
         ivec2 texel = ivec2(floor(at));
         float added = 0.25 * deposit.z / texelFetch(u_film, texel, 0).w;

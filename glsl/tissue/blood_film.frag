@@ -1,5 +1,7 @@
 #version 330 core
 #include "tissue/blood_common.glsl"
+#include "tissue/blood_relief.glsl"
+#include "tissue/blood_plan.glsl"
 // One step of the film. The tiles that are drawn are those in which something can change.
 uniform sampler2D u_film;
 uniform sampler2D u_right;
@@ -7,18 +9,22 @@ uniform sampler2D u_top;
 uniform float u_one;
 uniform bool u_dries;  // also where it stands
 #ifdef SEAMS
+#include "tissue/blood_gutter.glsl"
 #include "tissue/list.glsl"
-uniform sampler2D u_seam_parts;  // where a cell's parts of seams begin in u_pulls, or -1
-uniform sampler2D u_pulls;       // of blood_link.frag
+uniform sampler2D u_place_of_cell;  // at seams: place in u_came, or -1
+uniform sampler2D u_came;           // of blood_seam.frag
 #endif
 #ifdef TOOLS
 #include "tissue/blood_tools.glsl"
 #endif
+flat in vec4 v_steps;  // whether the blocks to the left, to the right, below and above are stepped
 layout(location = 0) out vec4 o_film;
+layout(location = 1) out float o_relief;
 
-/// Height [mm], and whether the surface goes on there: 2 in a cell, 1 in a gutter, 0 not.
-vec2 at(ivec2 texel) {
-    vec4 film = texelFetch(u_film, texel, 0);
+/// Height [mm], and whether the surface goes on there: 2 in a cell, 1 in a gutter, 0 not. Sampled rather than fetched by texel: what
+/// lies beyond the border needs no care, and software renderers sample faster.
+vec2 at(vec2 uv) {
+    vec4 film = textureLod(u_film, uv, 0.0);
     return vec2(film.x, film.w > 0.0 ? 2.0 : -film.w);
 }
 
@@ -32,48 +38,39 @@ float through(vec4 face, float a, float b, float slope_a, float slope_b) {
     return face.w > 0.0 ? exchange(drive, face.x, face.w, a, b) : 0.0;
 }
 
-#ifdef SEAMS
-/// Volume that comes across seams [mm^3].
-float across_seams(ivec2 here, float height) {
-    int width = textureSize(u_film, 0).x;
-    float came = 0.0;
-    int part = int(texelFetch(u_seam_parts, here, 0).r);
-    bool more = part >= 0;
-    while (more) {
-        vec4 pull = list_item(u_pulls, part);
-        int cell = int(abs(pull.w)) - 1;
-        float there = texelFetch(u_film, ivec2(cell % width, cell / width), 0).x;
-        came -= pull.z > 0.0 ? exchange(pull.y - pull.x * (there - height), pull.x, pull.z, height, there) : 0.0;
-        more = pull.w > 0.0;
-        ++part;
-    }
-    return came;
+/// A face beside a block that rests lets nothing pass: what left here would not come there.
+vec4 shut(vec4 face, bool at_edge, float steps, vec2 there) {
+    return vec4(face.xyz, at_edge && steps < 0.5 && there.y > 1.0 ? 0.0 : face.w);
 }
-#endif
 
 void main() {
     ivec2 here = ivec2(gl_FragCoord.xy);
-    vec4 film = texelFetch(u_film, here, 0);
-    ivec2 last = textureSize(u_film, 0) - 1;
-    ivec2 low = max(here - 1, ivec2(0));
-    ivec2 high = min(here + 1, last);
+    vec2 unit = 1.0 / vec2(textureSize(u_film, 0));
+    vec2 uv = gl_FragCoord.xy * unit;
+    vec4 film = textureLod(u_film, uv, 0.0);
+    vec2 low = uv - unit;
+    vec2 high = uv + unit;
     float c = film.x;
-    vec2 l = at(ivec2(low.x, here.y));
-    vec2 r = at(ivec2(high.x, here.y));
-    vec2 b = at(ivec2(here.x, low.y));
-    vec2 t = at(ivec2(here.x, high.y));
+    vec2 l = at(vec2(low.x, uv.y));
+    vec2 r = at(vec2(high.x, uv.y));
+    vec2 b = at(vec2(uv.x, low.y));
+    vec2 t = at(vec2(uv.x, high.y));
     o_film = film;
+    vec4 face = textureLod(u_right, uv, 0.0);
     // Nothing flows where no height around is above the rest that stays.
     float highest = max(max(max(l.x, r.x), max(b.x, t.x)), c);
     bool flows = film.w > 0.0 && (highest > u_flow.y || film.y != 0.0 || (c > 0.0 && u_dries));
     if (flows) {
-        vec4 right = texelFetch(u_right, here, 0);
-        vec4 top = texelFetch(u_top, here, 0);
-        vec4 left = here.x > 0 ? texelFetch(u_right, ivec2(low.x, here.y), 0) : vec4(0.0);
-        vec4 bottom = here.y > 0 ? texelFetch(u_top, ivec2(here.x, low.y), 0) : vec4(0.0);
+        ivec2 place = here & (block_side - 1);
+        vec4 right = shut(face, place.x == block_side - 1, v_steps.y, r);
+        vec4 top = shut(textureLod(u_top, uv, 0.0), place.y == block_side - 1, v_steps.w, t);
+        vec4 left = here.x > 0 ? textureLod(u_right, vec2(low.x, uv.y), 0.0) : vec4(0.0);
+        vec4 bottom = here.y > 0 ? textureLod(u_top, vec2(uv.x, low.y), 0.0) : vec4(0.0);
+        left = shut(left, place.x == 0, v_steps.x, l);
+        bottom = shut(bottom, place.y == 0, v_steps.z, b);
         vec2 lb = at(low);
-        vec2 rb = at(ivec2(high.x, low.y));
-        vec2 lt = at(ivec2(low.x, high.y));
+        vec2 rb = at(vec2(high.x, low.y));
+        vec2 lt = at(vec2(low.x, high.y));
         vec2 rt = at(high);
         float slope_u = slope(l, c, r);
         float slope_v = slope(b, c, t);
@@ -99,14 +96,12 @@ void main() {
         o_film = vec4(height, owed, film.z + lost / film.w + removed, film.w);
     }
 #ifdef SEAMS
-    // A gutter shows what lies across the seam.
-    if (film.w < 0.0) {
-        vec3 across = texelFetch(u_right, here, 0).xyz;
-        ivec2 cell = ivec2(across.xy + 0.5) + ivec2(int(across.z) % 3 - 1, int(across.z) / 3 - 1);
-        o_film = vec4(texelFetch(u_film, cell, 0).x, 0.0, 0.0, film.w);
-    }
-    // What comes across joins the height in the next step.
-    float came = across_seams(here, c);
-    o_film.y += film.w > 0.0 ? came / film.w : 0.0;
+    // What comes across joins the height in the next step. A gutter shows what lies there.
+    int place_of_cell = int(textureLod(u_place_of_cell, uv, 0.0).r);
+    float came = list_item(u_came, max(place_of_cell, 0)).r;
+    o_film.y += place_of_cell >= 0 ? came : 0.0;
+    float across = texelFetch(u_film, film.w < 0.0 ? cell_across(face) : here, 0).x;
+    o_film = film.w < 0.0 ? vec4(across, 0.0, 0.0, film.w) : o_film;
 #endif
+    o_relief = relief_of(o_film);
 }

@@ -1,4 +1,5 @@
 #version 330 core
+#include "tissue/blood_part.glsl"
 // What drives a film through the parts of seams. A part joins a cell to one across the seam as if they were neighbours; its share of
 // their common face is at most one half, since the other side has parts of its own there.
 uniform sampler2D u_links;  // cell, cell across, side (0 right, 1 left, 2 top, 3 bottom; 4 more: its last one), share (negative: as seen from across)
@@ -11,7 +12,7 @@ uniform vec3 u_down;
 uniform float u_strength;
 uniform float u_spreading;
 
-layout(location = 0) out vec4 o_link;  // spread, drive [mm], area [mm^2]; the other cell plus 1, negative in the last one
+layout(location = 0) out vec4 o_link;  // see blood_part.glsl
 
 ivec2 last;
 
@@ -55,8 +56,7 @@ void main() {
     vec2 flow = abs(texelFetch(u_gravity, from, 0).xy);
     float sum = flow.x + flow.y;
     float share = sum > 0.0 ? 0.4 + 2.4 * (side < 2 ? flow.x : flow.y) / sum : 1.0;
-    float other = (from_across ? link.x : link.y) + 1.0;
     // Seen from the other side everything is the same but the sign.
     o_link = vec4(part * u_strength * vec2(conductance * n, from_across ? -drive : drive), area > 0.0 ? part * share * area : 0.0,
-                  link.z > 3.5 ? -other : other);
+                  number_of_part(from_across ? from : to, link.z > 3.5));
 }

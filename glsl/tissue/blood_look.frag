@@ -10,27 +10,28 @@ layout(location = 0) out float o_height;
 layout(location = 1) out vec4 o_colour;
 layout(location = 2) out vec4 o_normal;
 
-float at(ivec2 texel) {
-    return texelFetch(u_relief, texel, 0).r;
+// A film from which more ran across a seam than has come yet may stand below 0 by a rounding.
+const float none = -0.5;
+
+float at(vec2 uv) {
+    return textureLod(u_relief, uv, 0.0).r;
 }
 
 float slope(float low, float here, float high) {
-    float difference = (high < 0.0 ? here : high) - (low < 0.0 ? here : low);
-    return min(low, high) < 0.0 ? difference : 0.5 * difference;
+    float difference = (high < none ? here : high) - (low < none ? here : low);
+    return min(low, high) < none ? difference : 0.5 * difference;
 }
 
 void main() {
-    ivec2 here = ivec2(gl_FragCoord.xy);
-    ivec2 last = textureSize(u_relief, 0) - 1;
-    ivec2 low = max(here - 1, ivec2(0));
-    ivec2 high = min(here + 1, last);
+    vec2 unit = 1.0 / vec2(textureSize(u_relief, 0));
+    vec2 here = gl_FragCoord.xy * unit;
     float centre = at(here);
     float h = max(centre, 0.0);
-    vec2 lengths = max(texelFetch(u_metric, here, 0).xy, vec2(1e-12));
-    vec2 slopes = vec2(slope(at(ivec2(low.x, here.y)), h, at(ivec2(high.x, here.y))),
-                       slope(at(ivec2(here.x, low.y)), h, at(ivec2(here.x, high.y)))) / lengths;
+    vec2 lengths = max(textureLod(u_metric, here, 0.0).xy, vec2(1e-12));
+    vec2 slopes = vec2(slope(at(here - vec2(unit.x, 0.0)), h, at(here + vec2(unit.x, 0.0))),
+                       slope(at(here - vec2(0.0, unit.y)), h, at(here + vec2(0.0, unit.y)))) / lengths;
     // Beside charts there is no length to measure a slope by.
-    slopes = centre >= 0.0 ? slopes : vec2(0.0);
+    slopes = centre >= none ? slopes : vec2(0.0);
     o_height = min(h, 60000.0);
     // Without blood exactly 1, as beside it.
     o_colour = vec4(1.0 - (1.0 - u_deep) * (1.0 - exp(-u_extinction * h)), 1.0 - exp(-h / u_covering));

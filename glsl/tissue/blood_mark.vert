@@ -4,6 +4,9 @@
 #include "tissue/list.glsl"
 uniform sampler2D u_pairs;   // one side, other side: x, y each, of tiles or blocks that a seam joins
 uniform sampler2D u_marked;
+#ifdef BLOCKS
+uniform sampler2D u_reach;  // of tiles: to be stepped
+#endif
 #else
 #include "tissue/blood_drop.glsl"
 uniform sampler2D u_drops;
@@ -19,13 +22,20 @@ void main() {
     gl_PointSize = 1.0;
 #ifdef SEAMS
     vec4 pair = list_item(u_pairs, gl_VertexID);
+#ifdef BLOCKS
+    float most = texelFetch(u_marked, ivec2(pair.xy), 0).r;
+    // A thin film goes no farther than to the blocks that the seam leads to.
+    gl_PointSize = most > 0.9 ? 3.0 : 1.0;
+    most = min(most, texelFetch(u_reach, ivec2(pair.zw) / 4, 0).r);
+#else
     ivec2 last = textureSize(u_marked, 0) - 1;
     float most = 0.0;
     for (int i = 0; i < 9; ++i) {
         most = max(most, texelFetch(u_marked, clamp(ivec2(pair.xy) + ivec2(i % 3 - 1, i / 3 - 1), ivec2(0), last), 0).r);
     }
+#endif
     if (most > 0.5) {
-        gl_Position = vec4(2.0 * (pair.zw + 0.5) / vec2(last + 1) - 1.0, 0.0, 1.0);
+        gl_Position = vec4(2.0 * (pair.zw + 0.5) / vec2(textureSize(u_marked, 0)) - 1.0, 0.0, 1.0);
     }
 #else
     ivec2 size = textureSize(u_drops, 0);
@@ -39,7 +49,7 @@ void main() {
             // Its outline, in which it leaves its trail. A block around it is drawn as well, which has room for the step's two texels.
             vec4 metric = texelFetch(u_metric, ivec2(clamp(at, vec2(0.0), u_film_size - 1.0)), 0);
             float sine = sqrt(max(1.0 - metric.z * metric.z, 0.0025));
-            vec2 extent = min(drop_radius(drop.z) / (max(metric.xy, vec2(1e-12)) * sine) + 1.0, vec2(24.0));
+            vec2 extent = min(drop_radius(drop.z) / (max(metric.xy, vec2(1e-12)) * sine) + 1.0, vec2(48.0));
             low = floor(max(at - extent, vec2(0.0)) / 8.0);
             high = floor(min(at + extent, u_film_size - 0.5) / 8.0);
         }

@@ -1,6 +1,7 @@
 #version 330 core
 #include "tissue/blood_common.glsl"
 #include "tissue/blood_place.glsl"
+#include "tissue/blood_plan.glsl"
 #include "tissue/blood_drop.glsl"
 // One step of every drop: it runs down the surface, leaves a film behind, and gives itself up to the film where it comes to rest, meets
 // a film as deep as itself, or has grown old.
@@ -47,6 +48,11 @@ void main() {
     // A direction holds in the chart in which it was read.
     vec3 to = middle.z == 2.0 ? place_on_surface(middle.xy + (0.5 * dt * cap) * v1) : place_on_surface(from + (dt * cap) * v1);
     bool falls = to.z == 0.0;
+    // Past the corner of a chart a drop may come to where no plan has looked: there it waits for the next one.
+    if (!falls && !steps_at(ivec2(floor(to.xy)))) {
+        o_drop = drop;
+        return;
+    }
     float speed = fastest * g1.z * cap;  // [mm/s]
 
     float volume = drop.z;

@@ -32,13 +32,10 @@ vec3 place_on_surface(vec2 texel) {
     // Beside a corner of charts the jump may miss the surface by less than a texel.
     vec2 best = centre;
     bool found = false;
-    for (int i = 0; i < 10; ++i) {
+    for (int i = 0; i < 10 && !found; ++i) {
         vec2 candidate = i == 0 ? jump : centre + vec2(float((i - 1) % 3 - 1), float((i - 1) / 3 - 1)) * (i == 1 ? 0.0 : 1.0);
-        ivec2 texel_at = clamp(ivec2(floor(candidate)), ivec2(0), last);
-        if (!found && texelFetch(u_film, texel_at, 0).w > 0.0) {
-            best = candidate;
-            found = true;
-        }
+        found = texelFetch(u_film, clamp(ivec2(floor(candidate)), ivec2(0), last), 0).w > 0.0;
+        best = found ? candidate : best;
     }
     return vec3(best, found ? 2.0 : 0.0);
 }

@@ -1,5 +1,14 @@
 // Blocks of 8 x 8 texels, the finer grid over the tiles: as many steps as there are texels along a side lie between two looks, and a
-// film goes on by a texel per step. What has no blood within a block around it stays empty until the next look.
+// film goes on by a texel per step at most. What blood does not reach stays as it is until the next look.
 uniform sampler2D u_plan;  // r: to be stepped, g: to be shown
 
 const int block_side = 8;
+
+bool steps_in(ivec2 block) {
+    return texelFetch(u_plan, block, 0).r > 0.5;
+}
+
+/// Whether the film in a texel is stepped.
+bool steps_at(ivec2 texel) {
+    return steps_in(texel >> 3);
+}

@@ -1,4 +1,5 @@
 #version 330 core
+#include "tissue/blood_relief.glsl"
 // The film on a surface that has just come or moved: what lies on a cell keeps its volume as the cell's area changes.
 uniform sampler2D u_film;
 uniform sampler2D u_metric;
@@ -9,6 +10,7 @@ uniform bool u_empty;  // nothing was there before
 uniform sampler2D u_spill;  // what lies there at the start [mm]
 #endif
 layout(location = 0) out vec4 o_film;
+layout(location = 1) out float o_relief;
 
 void main() {
     ivec2 here = ivec2(gl_FragCoord.xy);
@@ -23,4 +25,5 @@ void main() {
     start.x = cell ? clamp(texelFetch(u_spill, ivec2(gl_FragCoord.xy / vec2(textureSize(u_film, 0)) * vec2(textureSize(u_spill, 0))), 0).r, 0.0, 1e4) : 0.0;
 #endif
     o_film = vec4(u_empty ? start : scale * before.xyz, cell ? area : gutter ? -1.0 : 0.0);
+    o_relief = relief_of(o_film);
 }

@@ -1,8 +1,9 @@
 #version 330 core
 #include "tissue/blood_plan.glsl"
-// A point as large as a block for each block; those that are not asked for lie outside. The last ones along a side that is no multiple
-// of a block's lie over their neighbours in part, which draws the same there.
-uniform vec2 u_size;  // of the target [texels]
+#include "tissue/list.glsl"
+// A point as large as a block for each block with a surface; those that are not asked for lie outside.
+uniform sampler2D u_list;  // blocks: x, y
+uniform int u_first;       // of the list
 #ifdef SETTLED
 uniform sampler2D u_plan_before;
 #endif
@@ -10,10 +11,13 @@ uniform sampler2D u_plan_before;
 uniform sampler2D u_stepped;  // r: stepped since the picture was drawn
 uniform bool u_whole;         // the picture holds nothing yet
 #endif
+#ifdef STEP
+flat out vec4 v_steps;  // whether the blocks to the left, to the right, below and above are stepped
+#endif
 
 void main() {
     ivec2 blocks = textureSize(u_plan, 0);
-    ivec2 block = ivec2(gl_VertexID % blocks.x, gl_VertexID / blocks.x);
+    ivec2 block = ivec2(list_item(u_list, u_first + gl_VertexID).xy);
     vec2 plan = texelFetch(u_plan, block, 0).rg;
 #ifdef SETTLED
     // Stepped until now.
@@ -24,7 +28,12 @@ void main() {
 #else
     bool drawn = plan.r > 0.5;
 #endif
-    vec2 centre = min((vec2(block) + 0.5) * float(block_side), u_size - 0.5 * float(block_side));
+#ifdef STEP
+    ivec2 low = max(block - 1, ivec2(0));
+    ivec2 high = min(block + 1, blocks - 1);
+    v_steps = vec4(texelFetch(u_plan, ivec2(low.x, block.y), 0).r, texelFetch(u_plan, ivec2(high.x, block.y), 0).r,
+                   texelFetch(u_plan, ivec2(block.x, low.y), 0).r, texelFetch(u_plan, ivec2(block.x, high.y), 0).r);
+#endif
     gl_PointSize = float(block_side);
-    gl_Position = drawn ? vec4(2.0 * centre / u_size - 1.0, 0.0, 1.0) : vec4(2.0, 2.0, 2.0, 1.0);
+    gl_Position = drawn ? vec4((2.0 * vec2(block) + 1.0) / vec2(blocks) - 1.0, 0.0, 1.0) : vec4(2.0, 2.0, 2.0, 1.0);
 }

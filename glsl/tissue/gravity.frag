@@ -144,22 +144,22 @@ vec4 face(ivec2 a, ivec2 axis, float kind_a, vec3 origin) {
                                       : vec4(0.0);
 }
 
-/// Which of the 3 x 3 texels around a place [texels] is the nearest of the surface, counted from the bottom left. Beside a border the texel
-/// at the place itself need not be one.
-float nearest_surface(vec2 place) {
+/// The texel of the surface that is nearest to a place [texels], among the 3 x 3 around it. Beside a border the texel at the place itself
+/// need not be one.
+vec2 nearest_surface(vec2 place) {
     ivec2 middle = ivec2(floor(place + 0.5));
     float nearest = 1e9;
-    int found = 4;
+    ivec2 found = middle;
     for (int i = 0; i < 9; ++i) {
         ivec2 there = middle + ivec2(i % 3 - 1, i / 3 - 1);
         vec2 away = vec2(there) - place;
         float distance = dot(away, away);
         if (kind(there) == surface && distance < nearest) {
             nearest = distance;
-            found = i;
+            found = there;
         }
     }
-    return float(found);
+    return vec2(found);
 }
 
 void main() {
@@ -171,9 +171,10 @@ void main() {
         o_right = face(at, ivec2(1, 0), here, origin);
         o_top = face(at, ivec2(0, 1), here, origin);
     } else if (here == continued) {
-        // A gutter has no faces; it says where the surface goes on, and which texel there is nearest.
+        // A gutter has no faces; it says where the surface goes on, and which texel there is nearest. Below 0 no face has an area.
         vec2 place = texelFetch(u_seam, at, 0).xy * vec2(last + 1) - 0.5;
-        o_right = vec4(place, nearest_surface(place), -1.0);
+        vec2 cell = nearest_surface(place);
+        o_right = vec4(place, cell.x, -1.0 - cell.y);
         o_top = vec4(0.0);
     } else {
         origin = position(at + ivec2(1, 0));

@@ -1,0 +1,331 @@
+#include "effects/tissue/blood_blocks.h"
+
+#include <algorithm>
+#include <iterator>
+
+#include "effects/tissue/blood_programs.h"
+#include "engine/runtime/pass.h"
+
+namespace viscera::tissue {
+namespace {
+
+constexpr int tile_side = 32;
+constexpr int block_side = 8;  // divides a tile's; as blood_plan.glsl
+// A drop moves two texels in a step at most, and a block around those that it lies in is planned.
+constexpr int steps_per_plan = 4;
+constexpr float steps_per_look = 8.0F;  // at most
+// A film that creeps more slowly stands [mm/s].
+constexpr float still_mm_s = 5e-4F;
+// Marks are points as large as what they mark.
+constexpr gl::RasterState mark_state = [] {
+    gl::RasterState state = gl::max_blend_state;
+    state.program_point_size = true;
+    return state;
+}();
+// Those that are to be stepped, not those that show blood.
+constexpr gl::RasterState first_mark_state = [] {
+    gl::RasterState state = mark_state;
+    state.colour_mask = {true, false, false, false};
+    return state;
+}();
+
+std::array<gl::Texture, 2> pair_of(const gl::Functions& gl, int side, PixelFormat format, const char* label) {
+    return {gl::Texture::make_2d(gl, side, side, format, label),
+            gl::Texture::make_2d(gl, side, side, format, label)};
+}
+
+std::array<gl::Framebuffer, 2> targets_of(const gl::Functions& gl, const std::array<gl::Texture, 2>& textures,
+                                          const char* label) {
+    return {gl::Framebuffer(gl, textures[0], label), gl::Framebuffer(gl, textures[1], label)};
+}
+
+int divided_up(int a, int b) {
+    return (a + b - 1) / b;
+}
+
+}  // namespace
+
+BloodBlocks::BloodBlocks(const gl::Functions& gl, int size)
+    : gl_(&gl),
+      size_(size),
+      tiles_(divided_up(size, tile_side)),
+      blocks_(divided_up(size, block_side)),
+      surface_(gl::Texture::make_2d(gl, blocks_, blocks_, PixelFormat::r8, "blocks with a surface")),
+      marks_(pair_of(gl, tiles_, PixelFormat::rg8, "tiles of blood")),
+      across_(gl::Texture::make_2d(gl, tiles_, tiles_, PixelFormat::r8, "tiles of blood across seams")),
+      reach_(gl::Texture::make_2d(gl, tiles_, tiles_, PixelFormat::rg8, "tiles in reach of blood")),
+      held_(pair_of(gl, blocks_, PixelFormat::rgba8, "blocks of blood")),
+      near_(gl::Texture::make_2d(gl, blocks_, blocks_, PixelFormat::rg8, "blocks near blood")),
+      plan_(pair_of(gl, blocks_, PixelFormat::rg8, "blocks to be stepped")),
+      stepped_(gl::Texture::make_2d(gl, blocks_, blocks_, PixelFormat::r8, "blocks stepped")),
+      marks_target_(targets_of(gl, marks_, "tiles of blood")),
+      across_target_(gl, across_, "tiles of blood across seams"),
+      reach_target_(gl, reach_, "tiles in reach of blood"),
+      held_target_(targets_of(gl, held_, "blocks of blood")),
+      near_target_(gl, near_, "blocks near blood"),
+      plan_target_(targets_of(gl, plan_, "blocks to be stepped")),
+      stepped_target_(gl, stepped_, "blocks stepped"),
+      answers_(gl) {}
+
+void BloodBlocks::pair(Pairs& pairs, std::span<const SeamLink> links, std::span<const SeamJump> jumps,
+                       int side) const {
+    std::vector<std::array<int, 4>> found;
+    found.reserve(2 * links.size() + jumps.size());
+    const auto add = [&](int from, int to) {
+        found.push_back({from % size_ / side, from / size_ / side, to % size_ / side, to / size_ / side});
+    };
+    for (const SeamLink& link : links) {
+        // What flows one way must be seen from the other side as well.
+        add(static_cast<int>(link.from), static_cast<int>(link.to));
+        add(static_cast<int>(link.to), static_cast<int>(link.from));
+    }
+    // A drop leaves blood where the gutter below it leads, and the gutter shows what is there.
+    for (const SeamJump& jump : jumps) {
+        add(jump.gutter, jump.to);
+        add(jump.to, jump.gutter);
+    }
+    std::ranges::sort(found);
+    found.erase(std::ranges::unique(found).begin(), found.end());
+    std::vector<glm::vec4> texels;
+    std::ranges::transform(found, std::back_inserter(texels), [](const std::array<int, 4>& squares) {
+        return glm::vec4(glm::ivec4(squares[0], squares[1], squares[2], squares[3]));
+    });
+    pairs.count = static_cast<int>(found.size());
+    pairs.list.upload(*gl_, texels, "squares that seams join");
+}
+
+void BloodBlocks::lie_on(const Image& position, std::span<const SeamLink> links,
+                         std::span<const SeamJump> jumps) {
+    pair(tile_pairs_, links, jumps, tile_side);
+    pair(block_pairs_, links, jumps, block_side);
+    const auto count = static_cast<std::size_t>(blocks_);
+    std::vector<unsigned char> surface(count * count, 0);
+    std::vector<unsigned char> cells(count * count, 0);
+    for (int y = 0; y < size_; ++y) {
+        for (int x = 0; x < size_; ++x) {
+            const std::size_t block =
+                static_cast<std::size_t>(y / block_side) * count + static_cast<std::size_t>(x / block_side);
+            const float coverage = position.at(x, y, 3);
+            surface[block] = coverage > 0.0F ? 255 : surface[block];
+            cells[block] = coverage > 0.75F ? 1 : cells[block];
+        }
+    }
+    surface_.upload(std::as_bytes(std::span(surface)));
+    std::vector<glm::vec4> list;
+    for (const bool with_cells : {true, false}) {
+        for (std::size_t i = 0; i < surface.size(); ++i) {
+            if (surface[i] != 0 && (cells[i] != 0) == with_cells) {
+                list.emplace_back(i % count, i / count, 0.0F, 0.0F);
+            }
+        }
+        with_cells_ = with_cells ? static_cast<int>(list.size()) : with_cells_;
+    }
+    listed_ = static_cast<int>(list.size());
+    list_.upload(*gl_, list, "blocks with a surface");
+}
+
+void BloodBlocks::begin(const Pass& pass, bool everywhere) {
+    const float value = everywhere ? 1.0F : 0.0F;
+    for (std::size_t i = 0; i < 2; ++i) {
+        clear(pass, marks_target_[i], value);
+        draw_into(pass, held_target_[i], gl::overwrite_state);
+        held_target_[i].clear_colour(0, {value, 0.0F, 0.0F, 0.0F});
+        clear(pass, plan_target_[i], value);
+    }
+    clear(pass, reach_target_, value);
+    clear(pass, across_target_);
+    clear(pass, stepped_target_);
+    noted_ = false;
+    steps_planned_ = 0;
+    expected_count_ = 0;
+}
+
+void BloodBlocks::expect(std::span<const glm::vec4> places) {
+    expected_count_ = static_cast<int>(places.size());
+    if (!places.empty()) {
+        expected_.upload(*gl_, places, "places that bleed");
+    }
+}
+
+void BloodBlocks::mark(const Pass& pass, const BloodMedium& medium, const gl::Texture& drops, int first,
+                       int count, Squares squares) const {
+    const bool blockwise = squares == Squares::blocks;
+    const gl::Program& program = use(pass, BloodShader::mark_of_drops);
+    bind(pass, program, "u_drops", drops);
+    pass.bind(program, "u_metric", "metric");
+    program.set("u_drop", medium.drop);
+    program.set("u_first", first);
+    program.set("u_tile_count", glm::ivec2(blockwise ? blocks_ : tiles_));
+    program.set("u_film_size", glm::vec2(static_cast<float>(size_)));
+    program.set("u_blockwise", blockwise);
+    draw_into(pass, blockwise ? held_target_[now_] : marks_target_[now_],
+              blockwise ? first_mark_state : mark_state);
+    pass.draw_generated(GL_POINTS, count, 1);
+}
+
+void BloodBlocks::mark_alive(const Pass& pass, const BloodMedium& medium, const Blood& blood,
+                             Squares squares) const {
+    if (blood.alive.count > 0) {
+        mark(pass, medium, blood.drops, static_cast<int>(blood.alive.first % blood.ring),
+             static_cast<int>(blood.alive.count), squares);
+    }
+    if (expected_count_ > 0) {
+        mark(pass, medium, expected_.texture(), 0, expected_count_, squares);
+    }
+}
+
+void BloodBlocks::mark_across(const Pass& pass, const gl::Program& program, const Pairs& pairs,
+                              const gl::Texture& marked) const {
+    bind(pass, program, "u_pairs", pairs.list.texture());
+    bind(pass, program, "u_marked", marked);
+    pass.draw_generated(GL_POINTS, pairs.count, 1);
+}
+
+void BloodBlocks::reach(const Pass& pass) const {
+    if (tile_pairs_.count > 0) {
+        const gl::Program& marks = use(pass, BloodShader::mark_of_tiles);
+        draw_into(pass, across_target_, mark_state);
+        mark_across(pass, marks, tile_pairs_, marks_[now_]);
+    }
+    const gl::Program& program = use(pass, BloodShader::reach);
+    bind(pass, program, "u_tiles", marks_[now_]);
+    bind(pass, program, "u_across", across_);
+    draw_into(pass, reach_target_, gl::overwrite_state);
+    pass.draw_fullscreen();
+}
+
+void BloodBlocks::plan(const Pass& pass, const BloodMedium& medium, const Blood& blood) {
+    mark_alive(pass, medium, blood, Squares::blocks);
+    const gl::Program& program = use(pass, BloodShader::near);
+    bind(pass, program, "u_reach", reach_);
+    bind(pass, program, "u_blocks", held_[now_]);
+    bind(pass, program, "u_surface", surface_);
+    draw_into(pass, near_target_, gl::overwrite_state);
+    pass.draw_fullscreen();
+    const gl::Program& copy = use(pass, BloodShader::copy);
+    bind(pass, copy, "u_film", near_);
+    draw_into(pass, plan_target_[now_], gl::overwrite_state);
+    pass.draw_fullscreen();
+    if (block_pairs_.count > 0) {
+        const gl::Program& marks = use(pass, BloodShader::mark_of_blocks);
+        bind(pass, marks, "u_reach", reach_);
+        draw_into(pass, plan_target_[now_], first_mark_state);
+        mark_across(pass, marks, block_pairs_, near_);
+    }
+    steps_planned_ = steps_per_plan;
+}
+
+void BloodBlocks::look(const Pass& pass, const BloodMedium& medium, const Blood& blood, bool wake) {
+    const std::size_t before = now_;
+    const bool all = wake || !medium.tools.empty() || medium.flow.w > 0.0F;
+    // Those to be stepped up to now have been.
+    const gl::Program& note = use(pass, BloodShader::copy);
+    bind(pass, note, "u_film", plan_[before]);
+    draw_into(pass, stepped_target_, gl::max_blend_state);
+    pass.draw_fullscreen();
+    noted_ = true;
+    const gl::Program& search = use(pass, BloodShader::search);
+    bind_plan(pass, search);
+    bind(pass, search, "u_blocks", held_[before]);
+    bind(pass, search, "u_film", blood.film);
+    bind(pass, search, "u_film_before", blood.film_before);
+    search.set("u_still", still_mm_s * medium.flow.z);
+    search.set("u_rest", medium.flow.y);
+    search.set("u_all", all);
+    search.set("u_run", steps_per_look * medium.flow.z * medium.flow.x * medium.strength);
+    draw_into(pass, held_target_[1 - before], gl::overwrite_state);
+    pass.draw_fullscreen();
+    const gl::Program& scan = use(pass, BloodShader::scan);
+    bind(pass, scan, "u_tiles", marks_[before]);
+    bind(pass, scan, "u_reach", reach_);
+    bind(pass, scan, "u_blocks", held_[1 - before]);
+    scan.set("u_all", all);
+    draw_into(pass, marks_target_[1 - before], gl::overwrite_state);
+    pass.draw_fullscreen();
+    now_ = 1 - before;
+    clear(pass, across_target_);
+    mark_alive(pass, medium, blood, Squares::tiles);
+    reach(pass);
+    plan(pass, medium, blood);
+}
+
+void BloodBlocks::add_drops(const Pass& pass, const BloodMedium& medium, const Blood& blood,
+                            const DropRange& added) {
+    const int first = static_cast<int>(added.first % blood.ring);
+    mark(pass, medium, blood.drops, first, static_cast<int>(added.count), Squares::tiles);
+    mark(pass, medium, blood.drops, first, static_cast<int>(added.count), Squares::blocks);
+    reach(pass);
+    steps_planned_ = 0;
+}
+
+void BloodBlocks::before_step(const Pass& pass, const BloodMedium& medium, const Blood& blood) {
+    if (steps_planned_ <= 0 && blood.alive.count > 0) {
+        plan(pass, medium, blood);
+    }
+    --steps_planned_;
+}
+
+void BloodBlocks::bind_plan(const Pass& pass, const gl::Program& program) const {
+    bind(pass, program, "u_plan", plan_[now_]);
+}
+
+void BloodBlocks::draw(const Pass& pass, const gl::Program& program, int first, int last) const {
+    // Blocks are drawn as points, of which OpenGL leaves out those whose centre lies outside the viewport.
+    // So it covers whole blocks.
+    const int side = blocks_ * block_side;
+    gl::apply(pass.gl(), {.program_point_size = true}, {0, 0, side, side});
+    bind_plan(pass, program);
+    bind(pass, program, "u_list", list_.texture());
+    program.set("u_first", first);
+    pass.draw_generated(GL_POINTS, last - first, 1);
+}
+
+void BloodBlocks::cover(const Pass& pass, const gl::Program& program, Drawn drawn) const {
+    if (drawn == Drawn::settled) {
+        bind(pass, program, "u_plan_before", plan_[1 - now_]);
+    }
+    draw(pass, program, drawn == Drawn::gutters ? with_cells_ : 0,
+         drawn == Drawn::cells ? with_cells_ : listed_);
+}
+
+void BloodBlocks::cover_changed(const Pass& pass, const gl::Program& program, bool whole) const {
+    bind(pass, program, "u_stepped", stepped_);
+    program.set("u_whole", whole);
+    draw(pass, program, 0, listed_);
+}
+
+void BloodBlocks::forget_picture(const Pass& pass) {
+    clear(pass, stepped_target_, 1.0F);
+    noted_ = true;
+}
+
+void BloodBlocks::end_picture(const Pass& pass) {
+    if (noted_) {
+        clear(pass, stepped_target_);
+        noted_ = false;
+    }
+}
+
+void BloodBlocks::ask(std::uint64_t tag) {
+    if (answers_.in_flight() < 3) {
+        answers_.start(marks_[now_], tag);
+    }
+}
+
+std::optional<std::uint64_t> BloodBlocks::all_still() {
+    std::optional<std::uint64_t> still;
+    while (const auto answer = answers_.poll()) {
+        bool moves = false;
+        for (int y = 0; y < tiles_; ++y) {
+            for (int x = 0; x < tiles_; ++x) {
+                moves = moves || answer->image.at(x, y, 0) > 0.5F;
+            }
+        }
+        if (!moves) {
+            still = answer->tag;
+        }
+    }
+    return still;
+}
+
+}  // namespace viscera::tissue

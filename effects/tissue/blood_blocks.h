@@ -1,0 +1,125 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "effects/tissue/blood_medium.h"
+#include "effects/tissue/list_texture.h"
+#include "effects/tissue/seam_links.h"
+#include "engine/core/image.h"
+#include "engine/gl/framebuffer.h"
+#include "engine/gl/pixel_transfer.h"
+#include "engine/gl/program.h"
+#include "engine/gl/raster_state.h"
+#include "engine/gl/texture.h"
+
+namespace viscera {
+class Pass;
+}
+
+namespace viscera::tissue {
+
+/// Which parts of a film are stepped, known on the GPU alone: tiles in which nothing changes rest, and of
+/// the others only those blocks are stepped that blood may reach before the next plan. All functions but
+/// the drawing ones leave a framebuffer of their own bound.
+class BloodBlocks {
+  public:
+    /// Film and drops as they are now.
+    struct Blood {
+        const gl::Texture& film;
+        const gl::Texture& film_before;  ///< one step ago
+        const gl::Texture& drops;
+        DropRange alive;
+        std::int64_t ring = 1;  ///< drops that there is room for
+    };
+    enum class Drawn {
+        cells,    ///< to be stepped, those with cells
+        gutters,  ///< to be stepped, those with gutters alone
+        settled,  ///< stepped until the last look
+    };
+
+    /// `size`: texels along each side of the film.
+    BloodBlocks(const gl::Functions& gl, int size);
+
+    /// The surface is another.
+    void lie_on(const Image& position, std::span<const SeamLink> links, std::span<const SeamJump> jumps);
+    /// Nothing is known yet; `everywhere`: blood may be anywhere.
+    void begin(const Pass& pass, bool everywhere);
+    /// Where drops may appear before the next look: UV, and the volume of a drop as large as the place.
+    void expect(std::span<const glm::vec4> places);
+    /// Finds out which tiles have come to rest, and plans. `wake`: whatever shows blood is to be stepped.
+    void look(const Pass& pass, const BloodMedium& medium, const Blood& blood, bool wake);
+    /// Drops have come to, or leave their blood at, places that no plan has looked at.
+    void add_drops(const Pass& pass, const BloodMedium& medium, const Blood& blood, const DropRange& added);
+    /// Before each step: plans anew if drops may have left the blocks that are planned.
+    void before_step(const Pass& pass, const BloodMedium& medium, const Blood& blood);
+
+    /// Draws over blocks with a program in use whose vertex shader is blood_tile.vert.
+    void cover(const Pass& pass, const gl::Program& program, Drawn drawn) const;
+    /// Blocks stepped since the last picture; `whole`: all that show blood.
+    void cover_changed(const Pass& pass, const gl::Program& program, bool whole) const;
+    void bind_plan(const Pass& pass, const gl::Program& program) const;
+    /// The picture is unlike all before.
+    void forget_picture(const Pass& pass);
+    void end_picture(const Pass& pass);
+
+    /// Asks which tiles are to be stepped; the answer comes some frames later with the tag.
+    void ask(std::uint64_t tag);
+    /// The tag of an answer that says that no tile is, if one has come.
+    [[nodiscard]] std::optional<std::uint64_t> all_still();
+
+  private:
+    /// Squares that seams join, each pair once: x, y here, x, y across.
+    struct Pairs {
+        ListTexture list;
+        int count = 0;
+    };
+    enum class Squares { tiles, blocks };
+    void pair(Pairs& pairs, std::span<const SeamLink> links, std::span<const SeamJump> jumps, int side) const;
+    void mark(const Pass& pass, const BloodMedium& medium, const gl::Texture& drops, int first, int count,
+              Squares squares) const;
+    void mark_alive(const Pass& pass, const BloodMedium& medium, const Blood& blood, Squares squares) const;
+    void mark_across(const Pass& pass, const gl::Program& program, const Pairs& pairs,
+                     const gl::Texture& marked) const;
+    void reach(const Pass& pass) const;
+    void plan(const Pass& pass, const BloodMedium& medium, const Blood& blood);
+    void draw(const Pass& pass, const gl::Program& program, int first, int last) const;
+
+    const gl::Functions* gl_;
+    int size_ = 0;
+    int tiles_ = 0;     ///< along each side
+    int blocks_ = 0;    ///< along each side
+    ListTexture list_;  ///< blocks with a surface, those with cells first
+    int listed_ = 0;
+    int with_cells_ = 0;
+    Pairs tile_pairs_;
+    Pairs block_pairs_;
+    ListTexture expected_;
+    int expected_count_ = 0;
+    gl::Texture surface_;               ///< of blocks: there is one
+    std::array<gl::Texture, 2> marks_;  ///< of tiles: changed, visible
+    gl::Texture across_;                ///< of tiles: beyond a seam from marked ones
+    gl::Texture reach_;                 ///< of tiles: marked or beside marked ones
+    std::array<gl::Texture, 2> held_;   ///< of blocks: blood (blood_held.glsl), changed, shows blood
+    gl::Texture near_;                  ///< of blocks: in reach of blood within their chart
+    std::array<gl::Texture, 2> plan_;   ///< of blocks: to be stepped, to be shown; now, before the last look
+    gl::Texture stepped_;  ///< of blocks: stepped since the picture was drawn, up to the last look
+    std::array<gl::Framebuffer, 2> marks_target_;
+    gl::Framebuffer across_target_;
+    gl::Framebuffer reach_target_;
+    std::array<gl::Framebuffer, 2> held_target_;
+    gl::Framebuffer near_target_;
+    std::array<gl::Framebuffer, 2> plan_target_;
+    gl::Framebuffer stepped_target_;
+    std::size_t now_ = 0;
+    int steps_planned_ = 0;  ///< steps for which the plan still holds
+    bool noted_ = false;     ///< stepped_ holds something
+    gl::ReadBack answers_;
+};
+
+}  // namespace viscera::tissue
