@@ -1,7 +1,9 @@
 #include "engine/runtime/frame.h"
 
 #include <bit>
+#include <cmath>
 
+#include "engine/core/error.h"
 #include "engine/core/hash.h"
 
 namespace viscera {
@@ -38,6 +40,24 @@ void HostValues::erase(std::string_view name) {
 const HostValues::Entry* HostValues::find(std::string_view name) const {
     const auto found = entries_.find(name);
     return found == entries_.end() ? nullptr : &found->second;
+}
+
+void check_frame(const Frame& frame) {
+    const auto refuse = [](const char* why) { throw Error(ErrorCode::usage, "frame", why); };
+    if (frame.width < 1 || frame.height < 1) {
+        refuse("needs a width and a height of at least 1 pixel");
+    }
+    if (frame.eye_count != 1 && frame.eye_count != 2) {
+        refuse("has one eye or two");
+    }
+    if (frame.eye_index != 0) {
+        refuse("eye_index is the renderer's own");
+    }
+    // Written so that NaN is refused, too.
+    if (!(frame.quality.step_factor >= 1.0 && std::isfinite(frame.quality.step_factor)) ||
+        !(frame.quality.resolution > 0.0 && frame.quality.resolution <= 1.0)) {
+        refuse("needs a step factor of at least 1 and a resolution in (0, 1]");
+    }
 }
 
 }  // namespace viscera

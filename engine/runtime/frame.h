@@ -103,4 +103,7 @@ struct Frame {
     [[nodiscard]] double aspect() const { return static_cast<double>(width) / static_cast<double>(height); }
 };
 
+/// Throws Error(usage) for a frame that no scene could be rendered for.
+void check_frame(const Frame& frame);
+
 }  // namespace viscera

@@ -3,6 +3,8 @@
 #include <string>
 
 #include "engine/core/error.h"
+#include "engine/core/eyes.h"
+#include "engine/runtime/executor.h"
 
 namespace viscera {
 namespace {
@@ -30,8 +32,44 @@ Presenter::Presenter(const Pass::Shared& shared)
     : shared_(shared),
       program_(shared.shaders.entry({"common/fullscreen.vert", "common/present.frag", {}})) {}
 
-void Presenter::present(const Present& present, const PixelRect& viewport, const gl::Texture* texture,
-                        const PlanContent& content) {
+void Presenter::present(const Frame& frame, const std::string& first_output, const Executor& executor) {
+    const auto name = [&](const Present& present) -> const std::string& {
+        return present.output.empty() ? first_output : present.output;
+    };
+    const bool apart = frame.eye_count == 2 && frame.present_right.enabled;
+    if (frame.present.enabled) {
+        show(frame.present, name(frame.present), apart ? 0 : -1, executor);
+    }
+    if (apart) {
+        show(frame.present_right, name(frame.present_right), 1, executor);
+    }
+}
+
+void Presenter::show(const Present& present, const std::string& name, int eye, const Executor& executor) {
+    const auto show_one = [&](const Executor::Output& output, const PixelRect& viewport) {
+        draw(present, viewport, output.texture, *output.content);
+    };
+    if (const auto own = eye < 0 ? std::nullopt : executor.output(eye_name(name, eye))) {
+        return show_one(*own, present.viewport);
+    }
+    if (const auto output = executor.output(name)) {
+        return show_one(*output, present.viewport);
+    }
+    const auto left = executor.output(eye_name(name, 0));
+    const auto right = executor.output(eye_name(name, 1));
+    if (!left || !right) {
+        throw Error(ErrorCode::usage, name, "cannot be presented: it is no output of the scene");
+    }
+    PixelRect half = present.viewport;
+    half.width /= 2;
+    show_one(*left, half);
+    half.x += half.width;
+    half.width = present.viewport.width - half.width;
+    show_one(*right, half);
+}
+
+void Presenter::draw(const Present& present, const PixelRect& viewport, const gl::Texture* texture,
+                     const PlanContent& content) {
     const gl::Functions& gl = shared_.gl;
     const gl::Rect place{viewport.x, viewport.y, viewport.width, viewport.height};
     gl::RasterState state = gl::overwrite_state;

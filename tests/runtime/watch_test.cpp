@@ -112,6 +112,22 @@ TEST_P(WatchTest, EmptyTargetsShowTheirClearValue) {
     EXPECT_EQ(copy->image.at(5, 5, 0), 3.0F);
 }
 
+TEST_P(WatchTest, ATimelineInPlaceOfAHostChangesNothing) {
+    Scene scene = make_scene({{"column", 1.0}}, {"x"}, 24, 10);
+    scene.timeline = {{.value = "any",
+                       .interpolation = Interpolation::linear,
+                       .period_s = 0.0,
+                       .keys = {{0.0, {1.0}, {}}}}};
+    renderer().set_scene(scene);
+    renderer().watch({"x"});
+    still_ = false;
+    for (std::uint64_t index = 0; index < 3; ++index) {
+        render(index);
+        EXPECT_EQ(latest("x").frame, index);
+        EXPECT_TRUE(latest("x").image.data == renderer().read("x").data);
+    }
+}
+
 TEST_P(WatchTest, WhatIsNoTargetIsSaid) {
     renderer().set_scene(make_scene({{"column", 1.0}}, {"x"}, 24, 10));
     renderer().watch({"nothing"});
