@@ -80,9 +80,10 @@ void LabelParams::visit(ParamVisitor& v) {
     v.field({.name = "others", .doc = "What all labels that are not listed look like."}, others);
 }
 
-bool LabelParams::has_ramps() const {
-    return !others.points.empty() ||
-           std::ranges::any_of(segments, [](const Segment& segment) { return !segment.look.points.empty(); });
+int LabelParams::ramp_count() const {
+    const std::vector<const SegmentLook*> all = looks(*this);
+    return static_cast<int>(
+        std::ranges::count_if(all, [](const SegmentLook* look) { return !look->points.empty(); }));
 }
 
 void LabelParams::validate() const {

@@ -44,7 +44,9 @@ struct LabelParams {
 
     void visit(ParamVisitor& v);
     [[nodiscard]] bool used() const { return !file.empty() || !host.empty(); }
-    [[nodiscard]] bool has_ramps() const;
+    /// How many looks have a transfer function of their own.
+    [[nodiscard]] int ramp_count() const;
+    [[nodiscard]] bool has_ramps() const { return ramp_count() > 0; }
     /// Throws Error(scene): file and host, an id listed twice.
     void validate() const;
 };

@@ -18,6 +18,7 @@ namespace viscera::volume {
 namespace {
 
 constexpr int blue_noise_size = 32;
+constexpr int most_integrated_ramps = 255;
 // On an H200, whose compute shaders take 300 billion samples/s, skipping takes 0.7 times as long at 5 %
 // occupied bricks, 1.8 times as long at 25 % (viscera bench skipping).
 constexpr double compute_skips_below = 0.1;
@@ -49,9 +50,11 @@ void RayCastEffect::visit(ParamVisitor& visitor) {
 void RayCastEffect::validate() const {
     params_.volume.validate();
     params_.transfer_function.validate();
-    if (params_.sampling.scheme == Scheme::preintegrated && params_.look.labels.used()) {
-        throw Error(ErrorCode::scene, "/sampling/scheme",
-                    "preintegrated takes one transfer function for the whole slab; segments have their own");
+    if (params_.sampling.scheme == Scheme::preintegrated &&
+        params_.look.labels.ramp_count() > most_integrated_ramps) {
+        throw Error(ErrorCode::scene, "/labels/segments",
+                    "preintegrated takes at most " + std::to_string(most_integrated_ramps) +
+                        " segments with transfer functions of their own");
     }
     if (params_.isosurface.values.size() > most_iso_values) {
         throw Error(ErrorCode::scene, "/isosurface/values",
@@ -211,17 +214,18 @@ TexelRange RayCastEffect::texel_range(const TexelMap& stored_of_texel) const {
     return {std::min(a, b), std::max(a, b)};
 }
 
-ExtinctionKnots RayCastEffect::knots_of_texel(const TexelMap& stored_of_texel) const {
+ExtinctionKnots RayCastEffect::knots_of_texel(const TransferFunction& function,
+                                              const TexelMap& stored_of_texel) const {
     const Volume& volume = source_->volume();
     const TexelMap map{volume.slope * stored_of_texel.scale, volume.value_of(stored_of_texel.offset)};
-    return extinction_knots(function_, map, texel_range(stored_of_texel));
+    return extinction_knots(function, map, texel_range(stored_of_texel));
 }
 
 /// What the shader looks values up in.
 ClassificationTable RayCastEffect::table_of_texel(const TexelMap& stored_of_texel) const {
     const TexelRange range = texel_range(stored_of_texel);
     const int entries = params_.transfer_function.entries;
-    const ExtinctionKnots knots = knots_of_texel(stored_of_texel);
+    const ExtinctionKnots knots = knots_of_texel(function_, stored_of_texel);
     ClassificationTable table = tabulate(knots, range, entries);
     if (projects()) {  // opacity as it is: extremes and means have no length
         for (int i = 0; i < entries; ++i) {
@@ -239,8 +243,23 @@ void RayCastEffect::make_table(const gl::Functions& gl, const TexelMap& stored_o
     table_->upload(std::as_bytes(std::span(table.entries)));
     table_place_ = table.place;
     if (params_.sampling.scheme == Scheme::preintegrated && !projects()) {
-        slabs_.emplace(gl, tabulate_slabs(knots_of_texel(stored_of_texel), texel_range(stored_of_texel)));
+        make_slabs(gl, stored_of_texel);
     }
+}
+
+/// The transfer function's and those of segments, in the order of the rows that labels name.
+void RayCastEffect::make_slabs(const gl::Functions& gl, const TexelMap& stored_of_texel) {
+    std::vector<TransferFunction> functions = ramps(params_.look.labels, function_);
+    functions.insert(functions.begin(), function_);
+    constexpr std::size_t most_pieces = 131072;  // of all together: 12 MiB
+    const auto pieces =
+        static_cast<int>(std::min<std::size_t>(most_pieces / functions.size(), most_slab_pieces));
+    std::vector<SlabTable> tables;
+    for (const TransferFunction& function : functions) {
+        tables.push_back(tabulate_slabs(knots_of_texel(function, stored_of_texel),
+                                        texel_range(stored_of_texel), slab_bins, pieces));
+    }
+    slabs_.emplace(gl, tables);
 }
 
 Work RayCastEffect::prepare(Prepare& prepare) {

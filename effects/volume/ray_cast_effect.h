@@ -44,7 +44,9 @@ class RayCastEffect final : public Effect {
         bool operator==(const Variant&) const = default;
     };
     void find_function(Prepare& prepare);
-    [[nodiscard]] ExtinctionKnots knots_of_texel(const TexelMap& stored_of_texel) const;
+    [[nodiscard]] ExtinctionKnots knots_of_texel(const TransferFunction& function,
+                                                 const TexelMap& stored_of_texel) const;
+    void make_slabs(const gl::Functions& gl, const TexelMap& stored_of_texel);
     [[nodiscard]] ClassificationTable table_of_texel(const TexelMap& stored_of_texel) const;
     void make_table(const gl::Functions& gl, const TexelMap& stored_of_texel);
     [[nodiscard]] TexelRange texel_range(const TexelMap& stored_of_texel) const;

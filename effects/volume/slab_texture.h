@@ -1,15 +1,18 @@
 #pragma once
 
+#include <span>
+
 #include "effects/volume/slab_table.h"
 #include "engine/gl/texture.h"
 #include "engine/runtime/pass.h"
 
 namespace viscera::volume {
 
-/// A SlabTable on the GPU, for glsl/volume/slab_table.glsl.
+/// Tables of transfer functions over one range on the GPU, for glsl/volume/slab_table.glsl.
 class SlabTexture {
   public:
-    SlabTexture(const gl::Functions& gl, const SlabTable& table);
+    /// At least one table; all have as many bins.
+    SlabTexture(const gl::Functions& gl, std::span<const SlabTable> tables);
     void bind(const Pass& pass, const gl::Program& program) const;
 
   private:

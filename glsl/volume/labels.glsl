@@ -34,9 +34,19 @@ vec4 labelled(vec4 c, int label) {
     return vec4(mix(c.rgb, look.rgb, look.a), c.a * how.x);
 }
 
-vec4 classify_label(float value, int label) {
+// Row of the segment's transfer function.
+int ramp_of(int label) {
 #ifdef LABEL_RAMPS
-    int row = int(texelFetch(u_label_looks, ivec2(label, 1), 0).y);
+    return int(texelFetch(u_label_looks, ivec2(label, 1), 0).y);
+#else
+    return 0;
+#endif
+}
+
+// By the segment's transfer function, neither tinted nor thinned.
+vec4 classify_segment(float value, int label) {
+#ifdef LABEL_RAMPS
+    int row = ramp_of(label);
     float last = float(textureSize(u_label_ramps, 0).x - 1);
     float place = clamp(value * u_transfer_place.x + u_transfer_place.y, 0.0, last);
 #ifdef TRANSFER_LINEAR
@@ -46,8 +56,12 @@ vec4 classify_label(float value, int label) {
 #else
     vec4 c = texelFetch(u_label_ramps, ivec2(int(place + 0.5), row), 0);
 #endif
+    return c;
 #else
-    vec4 c = classify(value);
+    return classify(value);
 #endif
-    return labelled(c, label);
+}
+
+vec4 classify_label(float value, int label) {
+    return labelled(classify_segment(value, label), label);
 }
