@@ -284,10 +284,10 @@ void GpuVolume::update(const Source& source) {
     version_ = source.version();
 }
 
-void GpuVolume::set(const gl::Program& program) const {
+void GpuVolume::set(const gl::Program& program, std::string_view size, std::string_view tiles) const {
     if (atlas_) {
-        program.set("u_volume_size", atlas_->dims);
-        program.set("u_atlas_tiles", atlas_->tiles);
+        program.set(size, atlas_->dims);
+        program.set(tiles, atlas_->tiles);
     }
 }
 

@@ -49,8 +49,9 @@ class GpuVolume {
     [[nodiscard]] const gl::Texture& texture() const { return texture_; }
     /// Whether programs need STORAGE_ATLAS.
     [[nodiscard]] bool is_atlas() const { return atlas_.has_value(); }
-    /// Sets what else storage.glsl needs.
-    void set(const gl::Program& program) const;
+    /// Sets what else storage.glsl needs; for other samplers under other names.
+    void set(const gl::Program& program, std::string_view size = "u_volume_size",
+             std::string_view tiles = "u_atlas_tiles") const;
     [[nodiscard]] const TexelMap& map() const { return map_; }
 
   private:

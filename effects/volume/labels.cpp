@@ -140,6 +140,25 @@ std::function<std::uint16_t(const glm::ivec3& voxel)> labels_at(const Volume& la
     };
 }
 
+gl::Texture label_texture(const gl::Functions& gl, const Volume& labels, std::span<const std::uint16_t> dense,
+                          const std::optional<AtlasLayout>& atlas) {
+    const glm::ivec3 n = labels.grid.dims;
+    if (!atlas) {
+        gl::Texture texture = gl::Texture::make_3d(gl, {n.x, n.y, n.z}, gl::r16ui_format, labels.source);
+        texture.upload(std::as_bytes(dense));
+        return texture;
+    }
+    gl::Texture texture = gl::Texture::make_2d_array(gl, {atlas->page().x, atlas->page().y, atlas->layers},
+                                                     gl::r16ui_format, labels.source);
+    const auto slice = static_cast<std::size_t>(n.x) * static_cast<std::size_t>(n.y);
+    for (int z = 0; z < n.z; ++z) {
+        const glm::ivec3 place = atlas->place_of(z);
+        texture.upload_region({place.x, place.y, place.z}, {n.x, n.y, 1},
+                              std::as_bytes(dense.subspan(static_cast<std::size_t>(z) * slice, slice)));
+    }
+    return texture;
+}
+
 std::vector<glm::vec4> look_table(const LabelParams& params) {
     const std::vector<const SegmentLook*> all = looks(params);
     std::vector<glm::vec4> table(2 * all.size());

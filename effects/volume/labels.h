@@ -9,6 +9,7 @@
 
 #include <glm/glm.hpp>
 
+#include "effects/volume/atlas.h"
 #include "effects/volume/classification.h"
 #include "effects/volume/source.h"
 #include "engine/core/log.h"
@@ -61,6 +62,11 @@ struct LabelParams {
 [[nodiscard]] std::function<std::uint16_t(const glm::ivec3& voxel)> labels_at(const Volume& labels,
                                                                               const LabelParams& params,
                                                                               const VolumeGrid& shown);
+
+/// The result of dense_labels() as glsl/volume/labels.glsl reads it: a 3-D texture, or slice by slice.
+[[nodiscard]] gl::Texture label_texture(const gl::Functions& gl, const Volume& labels,
+                                        std::span<const std::uint16_t> dense,
+                                        const std::optional<AtlasLayout>& atlas);
 
 /// The looks as glsl/volume/labels.glsl reads them: one column per index, two rows.
 [[nodiscard]] std::vector<glm::vec4> look_table(const LabelParams& params);

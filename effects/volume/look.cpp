@@ -91,6 +91,10 @@ gl::Texture table(const gl::Functions& gl, std::span<const T> texels, int rows, 
     return texture;
 }
 
+Storage storage_of(const LookScene& scene) {
+    return scene.atlas ? Storage::atlas : Storage::texture_3d;
+}
+
 }  // namespace
 
 void LookParams::visit(ParamVisitor& v) {
@@ -172,6 +176,17 @@ std::string_view Look::load(const LookParams& params, const VolumeGrid& shown, P
     return {};
 }
 
+bool Look::fits_3d(const gl::Functions& gl) const {
+    int longest = 0;
+    for (const Source* source : {labels_.get(), overlay_.get()}) {
+        if (source != nullptr) {
+            const glm::ivec3 n = source->volume().grid.dims;
+            longest = std::max({longest, n.x, n.y, n.z});
+        }
+    }
+    return longest == 0 || longest <= TextureLimits::query(gl).side_3d;
+}
+
 std::uint64_t Look::key() const {
     return Hash().add(key_of(labels_)).add(key_of(overlay_)).value();
 }
@@ -205,9 +220,9 @@ void Look::bind_labels(const LookParams& params, const LookScene& scene, const P
     for (const Segment& segment : params.labels.segments) {
         ids.add(segment.id);
     }
-    label_voxels_ =
-        pass.assets().shared<Made>(Hash().add("label voxels").add(labels_->key).add(ids.value()).value(),
-                                   [] { return std::make_shared<Made>(); });
+    label_voxels_ = pass.assets().shared<Made>(
+        Hash().add("label voxels").add(labels_->key).add(ids.value()).add(scene.atlas).value(),
+        [] { return std::make_shared<Made>(); });
     const std::uint64_t voxels_key = key_of(labels_);
     if (label_voxels_->key != voxels_key) {
         std::size_t broken = 0;
@@ -216,9 +231,9 @@ void Look::bind_labels(const LookParams& params, const LookScene& scene, const P
             pass.log().fault("volume.labels", "labels are not whole numbers; they count as not listed",
                              broken);
         }
-        label_voxels_->texture.emplace(
-            gl::Texture::make_3d(pass.gl(), {n.x, n.y, n.z}, gl::r16ui_format, labels.source));
-        label_voxels_->texture->upload(std::as_bytes(std::span(dense)));
+        label_voxels_->atlas =
+            choose_storage(n, storage_of(scene), TextureLimits::query(pass.gl()), labels.source);
+        label_voxels_->texture.emplace(label_texture(pass.gl(), labels, dense, label_voxels_->atlas));
         label_voxels_->key = voxels_key;
     }
     if (label_looks_.key != parameters_key_) {
@@ -251,6 +266,10 @@ void Look::bind_labels(const LookParams& params, const LookScene& scene, const P
     program.set("u_labels_curved", place.curved);
     program.set("u_labels_scale", glm::vec3(place.map.scale * glm::dvec3(n)));
     program.set("u_labels_offset", glm::vec3(place.map.offset * glm::dvec3(n)));
+    if (label_voxels_->atlas) {
+        program.set("u_labels_size", label_voxels_->atlas->dims);
+        program.set("u_labels_tiles", label_voxels_->atlas->tiles);
+    }
     pass.bind(program, "u_labels", *label_voxels_->texture, gl::Filter::nearest);
     pass.bind(program, "u_label_looks", *label_looks_.texture, gl::Filter::nearest);
     if (params.labels.has_ramps()) {
@@ -261,10 +280,9 @@ void Look::bind_labels(const LookParams& params, const LookScene& scene, const P
 void Look::bind_overlay(const LookParams& params, const LookScene& scene, const Pass& pass,
                         const gl::Program& program) {
     const Volume& overlay = overlay_->volume();
-    GpuVolume& gpu = *pass.assets().shared<GpuVolume>(Hash().add(overlay_->key).add("overlay").value(), [&] {
-        return std::make_shared<GpuVolume>(pass.gl(), *overlay_, 0);
-    });
+    GpuVolume& gpu = *load_gpu_volume(pass.assets(), pass.gl(), *overlay_, 0, storage_of(scene));
     gpu.update(*overlay_);
+    gpu.set(program, "u_overlay_size", "u_overlay_tiles");
     const std::uint64_t map_key = Hash().add(key_of(overlay_)).add(parameters_key_).value();
     if (overlay_map_.key != map_key) {
         const OverlayTable map = overlay_table(
@@ -284,7 +302,7 @@ void Look::bind_overlay(const LookParams& params, const LookScene& scene, const 
     program.set("u_overlay_place", glm::vec2(overlay_place_));
     program.set("u_overlay_strength", static_cast<float>(params.overlay.strength));
     pass.bind(program, "u_overlay", gpu.texture(), gl::Filter::linear,
-              overlay.grid.shape.wrap ? gl::Wrap::repeat : gl::Wrap::clamp);
+              overlay.grid.shape.wrap && !gpu.is_atlas() ? gl::Wrap::repeat : gl::Wrap::clamp);
     pass.bind(program, "u_overlay_map", *overlay_map_.texture, gl::Filter::nearest);
 }
 

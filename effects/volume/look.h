@@ -50,6 +50,7 @@ struct LookScene {
     TexelMap value_of_texel;
     TexelRange range;                 ///< [texel]
     int entries;                      ///< of tables over the range
+    bool atlas = false;               ///< whether volumes are stored as slices, all alike
     const Volume* colours = nullptr;  ///< accumulated as they are; none: the function says what is seen
     const AccumulateParams* accumulate = nullptr;  ///< of colours
 };
@@ -68,6 +69,8 @@ class Look {
     /// Loads what the parameters name. Reason to draw nothing: a volume that the host does not give; else
     /// empty. Throws Error(scene) for a curvilinear one whose shape is not that of the volume that is shown.
     [[nodiscard]] std::string_view load(const LookParams& params, const VolumeGrid& shown, Prepare& prepare);
+    /// Whether labels and overlay both fit 3-D textures.
+    [[nodiscard]] bool fits_3d(const gl::Functions& gl) const;
     /// Of labels and overlay, for Work.
     [[nodiscard]] std::uint64_t key() const;
     /// Adds what labels with transfer functions of their own show.
@@ -92,6 +95,7 @@ class Look {
     struct Made {
         std::optional<gl::Texture> texture;
         std::uint64_t key = 0;
+        std::optional<AtlasLayout> atlas{};  ///< of what is stored as slices
     };
     std::uint64_t parameters_key_ = 0;
     SourceParams label_source_;

@@ -381,8 +381,10 @@ void RayCastEffect::bind_blue_noise(const Pass& pass, const gl::Program& program
 }
 
 void RayCastEffect::draw(const Pass& pass) {
-    GpuVolume& gpu =
-        *load_gpu_volume(pass.assets(), pass.gl(), *sampled_, sampled_channel_, params_.volume.storage);
+    // One program for each way to store: a volume that does not fit takes the others with it.
+    const bool large = params_.volume.storage == Storage::automatic && !look_.fits_3d(pass.gl());
+    GpuVolume& gpu = *load_gpu_volume(pass.assets(), pass.gl(), *sampled_, sampled_channel_,
+                                      large ? Storage::atlas : params_.volume.storage);
     gpu.update(*sampled_);
     variant_.atlas = gpu.is_atlas();
     const Volume& volume = source_->volume();
@@ -467,6 +469,7 @@ void RayCastEffect::draw(const Pass& pass) {
                         TexelMap{value_scale, value_offset},
                         texel_range(map),
                         params_.transfer_function.entries};
+        scene.atlas = variant_.atlas;
         if (shows_colours()) {
             scene.value_of_texel = {};
             scene.colours = &voxels_->volume();

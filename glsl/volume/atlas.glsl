@@ -1,6 +1,6 @@
 // Slices of a volume side by side on the layers of an array, each with a border of one texel: effects/volume/atlas.h.
 // `size` in voxels; `tiles`: slices beside and above each other on a layer.
-
+#ifdef STORAGE_ATLAS
 // First texel of a slice, behind its border, and its layer.
 ivec3 atlas_tile(ivec3 size, ivec2 tiles, int slice) {
     int row = slice / tiles.x;
@@ -30,3 +30,4 @@ vec4 linear_in_atlas(sampler2DArray atlas, ivec3 size, ivec2 tiles, vec3 place, 
     vec4 high = atlas_slice(atlas, size, tiles, inside, int(below) + 1);
     return low + (p.z - 0.5 - below) * (high - low);
 }
+#endif

@@ -1,5 +1,11 @@
 // Segments: each voxel of a second grid names one. Never filtered.
+#ifdef STORAGE_ATLAS
+uniform usampler2DArray u_labels;
+uniform ivec3 u_labels_size;   // voxels
+uniform ivec2 u_labels_tiles;  // as u_atlas_tiles
+#else
 uniform usampler3D u_labels;
+#endif
 uniform mat4 u_labels_from_local;   // local -> voxels of the label grid
 #ifdef COORDINATES
 uniform bool u_labels_curved;       // the label grid has the volume's shape: texture coordinates -> voxels instead
@@ -11,6 +17,23 @@ uniform sampler2D u_label_looks;    // row 0: colour, its weight; row 1: factor 
 uniform sampler2D u_label_ramps;    // as u_transfer, one row for each ramp; row 0 is the transfer function
 #endif
 
+ivec3 label_voxels() {
+#ifdef STORAGE_ATLAS
+    return u_labels_size;
+#else
+    return textureSize(u_labels, 0);
+#endif
+}
+
+int label_of(ivec3 voxel) {
+#ifdef STORAGE_ATLAS
+    ivec3 tile = atlas_tile(u_labels_size, u_labels_tiles, voxel.z);
+    return int(texelFetch(u_labels, ivec3(tile.xy + voxel.xy, tile.z), 0).r);
+#else
+    return int(texelFetch(u_labels, voxel, 0).r);
+#endif
+}
+
 // Index of the segment's look; 0: the default, also outside of the label grid.
 int label_at(vec3 local) {
     vec3 place = (u_labels_from_local * vec4(local, 1.0)).xyz;
@@ -18,12 +41,12 @@ int label_at(vec3 local) {
     place = u_labels_curved ? to_sample(local) * u_labels_scale + u_labels_offset : place;
 #endif
     ivec3 voxel = ivec3(floor(place));
-    ivec3 size = textureSize(u_labels, 0);
+    ivec3 size = label_voxels();
 #ifdef COORDINATES
     voxel.ANGLE = u_labels_curved ? on_ring(voxel.ANGLE, size.ANGLE) : voxel.ANGLE;
 #endif
     bool inside = all(greaterThanEqual(voxel, ivec3(0))) && all(lessThan(voxel, size));
-    int found = int(texelFetch(u_labels, clamp(voxel, ivec3(0), size - 1), 0).r);
+    int found = label_of(clamp(voxel, ivec3(0), size - 1));
     return inside ? found : 0;
 }
 

@@ -1,5 +1,11 @@
 // A second, coarser volume gives the hue; the brightness stays.
+#ifdef STORAGE_ATLAS
+uniform sampler2DArray u_overlay;
+uniform ivec3 u_overlay_size;   // voxels
+uniform ivec2 u_overlay_tiles;  // as u_atlas_tiles
+#else
 uniform sampler3D u_overlay;
+#endif
 uniform mat4 u_overlay_from_local;  // local -> texture coordinates of the overlay
 #ifdef COORDINATES
 uniform bool u_overlay_curved;      // the overlay has the volume's shape: texture coordinates -> its own instead
@@ -10,19 +16,37 @@ uniform vec2 u_overlay_place;       // texel -> place in the colour map: x * tex
 uniform float u_overlay_strength;
 uniform sampler2D u_overlay_map;    // colour and share of the strength, one row
 
+ivec3 overlay_voxels() {
+#ifdef STORAGE_ATLAS
+    return u_overlay_size;
+#else
+    return textureSize(u_overlay, 0);
+#endif
+}
+
+float overlay_value(vec3 place, bool ring) {
+#ifdef STORAGE_ATLAS
+    return linear_in_atlas(u_overlay, u_overlay_size, u_overlay_tiles, place, ring).r;
+#else
+    return textureLod(u_overlay, place, 0.0).r;
+#endif
+}
+
 // Fusion in the HSV model: hue and saturation of the map, value of the colour.
 vec3 overlaid(vec3 colour, vec3 local) {
     vec3 place = (u_overlay_from_local * vec4(local, 1.0)).xyz;
 #ifdef COORDINATES
     // Both end at the same places; across the seam of a ring the overlay's sampler repeats.
     place = u_overlay_curved ? to_sample(local) * u_overlay_scale + u_overlay_offset : place;
-    vec3 edge = 0.5 / vec3(textureSize(u_overlay, 0));
+    vec3 edge = 0.5 / vec3(overlay_voxels());
     vec3 between = clamp(place, edge, 1.0 - edge);
     bool ring = u_overlay_curved && u_ring;
     between.ANGLE = ring ? place.ANGLE : between.ANGLE;
     place = u_overlay_curved ? between : place;
+#else
+    const bool ring = false;
 #endif
-    float share = textureLod(u_overlay, place, 0.0).r * u_overlay_place.x + u_overlay_place.y;
+    float share = overlay_value(place, ring) * u_overlay_place.x + u_overlay_place.y;
     bool inside = all(greaterThanEqual(place, vec3(0.0))) && all(lessThanEqual(place, vec3(1.0)));
 #ifdef COORDINATES
     inside = inside || u_overlay_curved;

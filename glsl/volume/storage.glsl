@@ -33,8 +33,8 @@ ivec4 on_ring(ivec4 voxels, int count) {
 }
 #endif
 
-#ifdef STORAGE_ATLAS
 #include "volume/atlas.glsl"
+#ifdef STORAGE_ATLAS
 uniform sampler2DArray u_volume;
 uniform ivec3 u_volume_size;  // voxels
 uniform ivec2 u_atlas_tiles;  // slices beside and above each other on a layer

@@ -275,6 +275,13 @@ TEST_F(VolumeLooks, LabelsOfNoneBesideAndBroken) {
         parameters["labels"]["segments"] = {{{"id", id}, {"visible", false}}};
         expect_homogeneous(cast(volume, parameters), to_world, 3e-5, "ids of any size");
     }
+    parameters["sampling"]["scheme"] = "preintegrated";
+    parameters["labels"]["segments"] = {{{"id", 3}, {"visible", false}}};
+    EXPECT_TRUE(is_empty(cast(volume, parameters)));
+    for (const LiveVolume* labels : {&beside, &broken, &no_number}) {
+        give("labels", labels);
+        expect_homogeneous(cast(volume, parameters), to_world, 3e-5, "pre-integrated, no voxel of the id");
+    }
     give("labels", nullptr);
     EXPECT_TRUE(is_empty(cast(volume, parameters)));
     parameters["labels"]["segments"] = {{{"id", 3}}, {{"id", 3}}};

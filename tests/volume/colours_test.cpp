@@ -178,6 +178,11 @@ TEST_F(ColourAccumulation, SkippingStorageAndSchemeChangeLittleOrNothing) {
     const HostVolume given{"labels", &labels};
     for (const char* filter : {"nearest", "linear", "linear_fp32", "bspline", "catmull_rom_fp32"}) {
         for (const char* scheme : {"midpoint", "gauss", "cell"}) {
+            // Software renderers take seconds to compile the largest of these shaders.
+            const std::string_view name(filter);
+            if ((name == "bspline" || name == "catmull_rom_fp32") && std::string_view(scheme) != "midpoint") {
+                continue;
+            }
             nlohmann::json p = parameters(list);
             p["sampling"]["filter"] = filter;
             p["sampling"]["scheme"] = scheme;
