@@ -8,7 +8,7 @@ namespace viscera::gl {
 
 HostState::HostState(const Functions& gl) : gl_(&gl) {
     std::size_t offset = 0;
-    for (const auto rows : {fixed_state_rows(), binding_rows()}) {
+    for (const auto rows : {fixed_state_rows(), indexed_state_rows(), binding_rows()}) {
         for (const HostStateRow& row : rows) {
             if (row.available(gl)) {
                 entries_.push_back({&row, offset});

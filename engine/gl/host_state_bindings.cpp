@@ -1,18 +1,10 @@
-#include <algorithm>
-
-#include "engine/gl/handle.h"
-#include "engine/gl/host_state_rows.h"
+#include "engine/gl/host_state_values.h"
 
 namespace viscera::gl {
 namespace {
 
-using Values = std::span<GLint64>;
-using Saved = std::span<const GLint64>;
 using Objects = PoisonObjects;
 
-GLenum as_enum(GLint64 value) {
-    return static_cast<GLenum>(value);
-}
 GLuint as_name(GLint64 value) {
     return static_cast<GLuint>(value);
 }
@@ -23,12 +15,6 @@ GLint read_int(const Functions& gl, GLenum name) {
     return value;
 }
 
-bool always(const Functions& /*gl*/) {
-    return true;
-}
-bool has_4_0(const Functions& gl) {
-    return gl.VERSION_4_0 != 0;
-}
 bool has_debug(const Functions& gl) {
     return gl.KHR_debug != 0 && gl.GetPointerv != nullptr;
 }

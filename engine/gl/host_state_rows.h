@@ -54,6 +54,8 @@ struct HostStateRow {
 
 /// The fixed pipeline. Independent of each other.
 [[nodiscard]] std::span<const HostStateRow> fixed_state_rows();
+/// What of it there is once per viewport or draw buffer.
+[[nodiscard]] std::span<const HostStateRow> indexed_state_rows();
 /// Objects bound, in the order in which they must be set back.
 [[nodiscard]] std::span<const HostStateRow> binding_rows();
 
