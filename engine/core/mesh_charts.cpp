@@ -1,14 +1,13 @@
 #include "engine/core/mesh_charts.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <queue>
 #include <set>
 
-#include "engine/core/texel_raster.h"
+#include "engine/core/flat_chart.h"
 
 namespace viscera {
 namespace {
@@ -23,13 +22,6 @@ constexpr int rounds = 12;
 glm::dvec3 unit_or(const glm::dvec3& v, const glm::dvec3& otherwise) {
     const double length = glm::length(v);
     return length > 0.0 && std::isfinite(length) ? v / length : otherwise;
-}
-
-/// Two directions at right angles to `axis` and each other.
-std::array<glm::dvec3, 2> plane_of(const glm::dvec3& axis) {
-    const glm::dvec3 aside = std::abs(axis.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
-    const glm::dvec3 u = glm::normalize(glm::cross(aside, axis));
-    return {u, glm::cross(axis, u)};
 }
 
 class Cutter {
@@ -324,97 +316,20 @@ class Cutter {
         charts_.axis[into] = axis;
     }
 
-    /// An edge of a chart's border on the chart's plane, ends by place.
-    struct BorderEdge {
-        std::uint32_t from = 0;
-        std::uint32_t to = 0;
-        glm::dvec2 a{0.0};
-        glm::dvec2 b{0.0};
-    };
-
-    [[nodiscard]] std::vector<BorderEdge> border_of(std::span<const std::uint32_t> members,
-                                                    const glm::dvec3& axis) const {
-        const auto [u, v] = plane_of(axis);
-        std::vector<BorderEdge> border;
+    [[nodiscard]] bool overlaps(std::span<const std::uint32_t> members, const glm::dvec3& axis) const {
+        FlatChart flat(axis);
         for (const std::uint32_t t : members) {
+            flat.add_triangle({corner(t, 0), corner(t, 1), corner(t, 2)});
             for (std::uint32_t k = 0; k < 3; ++k) {
                 const std::uint32_t across = across_[3 * t + k];
-                if (across != none && charts_.chart_of[across / 3] == charts_.chart_of[t]) {
-                    continue;
-                }
-                const std::uint32_t next = (k + 1) % 3;
-                border.push_back({place_[indices_[3 * t + k]],
-                                  place_[indices_[3 * t + next]],
-                                  {glm::dot(corner(t, k), u), glm::dot(corner(t, k), v)},
-                                  {glm::dot(corner(t, next), u), glm::dot(corner(t, next), v)}});
-            }
-        }
-        return border;
-    }
-
-    /// Whether a chart covers itself when laid on its plane. All its triangles face the axis, so neighbours
-    /// do not cover each other, and its border crosses itself, or winds about a vertex more than once around,
-    /// which a grid shows.
-    [[nodiscard]] bool overlaps(std::span<const std::uint32_t> members, const glm::dvec3& axis) const {
-        return border_crosses(members, axis) || covers_twice(members, axis);
-    }
-
-    [[nodiscard]] bool covers_twice(std::span<const std::uint32_t> members, const glm::dvec3& axis) const {
-        constexpr int side = 256;
-        constexpr double inside = 1e-3;
-        const auto [u, v] = plane_of(axis);
-        const auto flat = [&, &u = u, &v = v](std::uint32_t t, std::size_t k) {
-            return glm::dvec2(glm::dot(corner(t, k), u), glm::dot(corner(t, k), v));
-        };
-        glm::dvec2 low(std::numeric_limits<double>::max());
-        glm::dvec2 high(std::numeric_limits<double>::lowest());
-        for (const std::uint32_t t : members) {
-            for (std::size_t k = 0; k < 3; ++k) {
-                low = glm::min(low, flat(t, k));
-                high = glm::max(high, flat(t, k));
-            }
-        }
-        const double scale = side / std::max({high.x - low.x, high.y - low.y, 1e-300});
-        std::vector<bool> covered(static_cast<std::size_t>(side) * side, false);
-        bool found = false;
-        for (const std::uint32_t t : members) {
-            const std::array<glm::dvec2, 3> place{scale * (flat(t, 0) - low), scale * (flat(t, 1) - low),
-                                                  scale * (flat(t, 2) - low)};
-            (void)for_each_texel(place, 2 * side, [&](int x, int y, double b1, double b2) {
-                if (x < 0 || y < 0 || x >= side || y >= side || std::min({b1, b2, 1.0 - b1 - b2}) < inside) {
-                    return;
-                }
-                const auto i = static_cast<std::size_t>(y) * side + static_cast<std::size_t>(x);
-                found = found || covered[i];
-                covered[i] = true;
-            });
-        }
-        return found;
-    }
-
-    [[nodiscard]] bool border_crosses(std::span<const std::uint32_t> members, const glm::dvec3& axis) const {
-        std::vector<BorderEdge> border = border_of(members, axis);
-        const auto left = [](const BorderEdge& edge) { return std::min(edge.a.x, edge.b.x); };
-        const auto right = [](const BorderEdge& edge) { return std::max(edge.a.x, edge.b.x); };
-        std::ranges::sort(border, {}, left);
-        for (std::size_t i = 0; i < border.size(); ++i) {
-            for (std::size_t j = i + 1; j < border.size() && left(border[j]) <= right(border[i]); ++j) {
-                if (cross(border[i], border[j])) {
-                    return true;
+                if (across == none || charts_.chart_of[across / 3] != charts_.chart_of[t]) {
+                    const std::uint32_t next = (k + 1) % 3;
+                    flat.add_border({place_[indices_[3 * t + k]], place_[indices_[3 * t + next]]},
+                                    {corner(t, k), corner(t, next)});
                 }
             }
         }
-        return false;
-    }
-
-    [[nodiscard]] static bool cross(const BorderEdge& one, const BorderEdge& other) {
-        if (one.from == other.from || one.from == other.to || one.to == other.from || one.to == other.to) {
-            return false;
-        }
-        const auto side = [](const BorderEdge& edge, const glm::dvec2& p) {
-            return cross2(edge.b - edge.a, p - edge.a);
-        };
-        return side(one, other.a) * side(one, other.b) < 0.0 && side(other, one.a) * side(other, one.b) < 0.0;
+        return flat.covers_itself();
     }
 
     /// Charts that cover themselves are cut in the middle of their longer side.
