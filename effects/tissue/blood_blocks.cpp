@@ -9,10 +9,12 @@
 namespace viscera::tissue {
 namespace {
 
-constexpr int tile_side = 32;
-constexpr int block_side = 8;  // divides a tile's; as blood_plan.glsl
+constexpr int tile_side = 32;  // a multiple of a block's
 // A drop moves two texels in a step at most, and a block around those that it lies in is planned.
 constexpr int steps_per_plan = 4;
+// Until then a drop goes eight texels. Where a gutter of five leads is known texel by texel; this is the
+// rest.
+constexpr int past_gutter = 4;
 constexpr float steps_per_look = 8.0F;  // at most
 // A film that creeps more slowly stands [mm/s].
 constexpr float still_mm_s = 5e-4F;
@@ -68,27 +70,38 @@ BloodBlocks::BloodBlocks(const gl::Functions& gl, int size)
       answers_(gl) {}
 
 void BloodBlocks::pair(Pairs& pairs, std::span<const SeamLink> links, std::span<const SeamJump> jumps,
-                       int side) const {
-    std::vector<std::array<int, 4>> found;
-    found.reserve(2 * links.size() + jumps.size());
-    const auto add = [&](int from, int to) {
-        found.push_back({from % size_ / side, from / size_ / side, to % size_ / side, to / size_ / side});
+                       int side, int beyond) const {
+    // The last number of a pair: only what goes far comes there.
+    std::vector<std::array<int, 5>> found;
+    const auto add = [&](int from, int to, int x, int y, bool far) {
+        const glm::ivec2 at = glm::clamp(glm::ivec2(to % size_ + x, to / size_ + y), 0, size_ - 1) / side;
+        found.push_back({from % size_ / side, from / size_ / side, at.x, at.y, far ? 1 : 0});
+    };
+    const auto flow = [&](int from, int to) {
+        add(from, to, 0, 0, false);
+        for (int i = 0; beyond > 0 && i < 9; ++i) {
+            add(from, to, (i % 3 - 1) * beyond, (i / 3 - 1) * beyond, true);
+        }
     };
     for (const SeamLink& link : links) {
         // What flows one way must be seen from the other side as well.
-        add(static_cast<int>(link.from), static_cast<int>(link.to));
-        add(static_cast<int>(link.to), static_cast<int>(link.from));
+        flow(static_cast<int>(link.from), static_cast<int>(link.to));
+        flow(static_cast<int>(link.to), static_cast<int>(link.from));
     }
     // A drop leaves blood where the gutter below it leads, and the gutter shows what is there.
     for (const SeamJump& jump : jumps) {
-        add(jump.gutter, jump.to);
-        add(jump.to, jump.gutter);
+        flow(jump.gutter, jump.to);
+        add(jump.to, jump.gutter, 0, 0, false);
     }
     std::ranges::sort(found);
-    found.erase(std::ranges::unique(found).begin(), found.end());
+    const auto same = [](const std::array<int, 5>& a, const std::array<int, 5>& b) {
+        return std::equal(a.begin(), a.begin() + 4, b.begin());
+    };
+    found.erase(std::ranges::unique(found, same).begin(), found.end());
     std::vector<glm::vec4> texels;
-    std::ranges::transform(found, std::back_inserter(texels), [](const std::array<int, 4>& squares) {
-        return glm::vec4(glm::ivec4(squares[0], squares[1], squares[2], squares[3]));
+    std::ranges::transform(found, std::back_inserter(texels), [](const std::array<int, 5>& pair) {
+        return glm::vec4(pair[0], pair[1], pair[2], pair[3]) +
+               glm::vec4(0.0F, 0.0F, 0.0F, pair[4] != 0 ? 0.5F : 0.0F);
     });
     pairs.count = static_cast<int>(found.size());
     pairs.list.upload(*gl_, texels, "squares that seams join");
@@ -96,8 +109,8 @@ void BloodBlocks::pair(Pairs& pairs, std::span<const SeamLink> links, std::span<
 
 void BloodBlocks::lie_on(const Image& position, std::span<const SeamLink> links,
                          std::span<const SeamJump> jumps) {
-    pair(tile_pairs_, links, jumps, tile_side);
-    pair(block_pairs_, links, jumps, block_side);
+    pair(tile_pairs_, links, jumps, tile_side, 0);
+    pair(block_pairs_, links, jumps, block_side, past_gutter);
     const auto count = static_cast<std::size_t>(blocks_);
     std::vector<unsigned char> surface(count * count, 0);
     std::vector<unsigned char> cells(count * count, 0);

@@ -29,6 +29,8 @@ namespace viscera::tissue {
 /// the drawing ones leave a framebuffer of their own bound.
 class BloodBlocks {
   public:
+    static constexpr int block_side = 8;  ///< [texels]; as blood_plan.glsl
+
     /// Film and drops as they are now.
     struct Blood {
         const gl::Texture& film;
@@ -80,7 +82,8 @@ class BloodBlocks {
         int count = 0;
     };
     enum class Squares { tiles, blocks };
-    void pair(Pairs& pairs, std::span<const SeamLink> links, std::span<const SeamJump> jumps, int side) const;
+    void pair(Pairs& pairs, std::span<const SeamLink> links, std::span<const SeamJump> jumps, int side,
+              int beyond) const;
     void mark(const Pass& pass, const BloodMedium& medium, const gl::Texture& drops, int first, int count,
               Squares squares) const;
     void mark_alive(const Pass& pass, const BloodMedium& medium, const Blood& blood, Squares squares) const;

@@ -105,7 +105,7 @@ void BloodGpu::take_surface(const Pass& pass, const BloodMedium& medium, bool em
         clear(pass, ledger_target_);
         blocks_.begin(pass, spill);
     }
-    if (!seams_->empty) {
+    if (!seams_->empty()) {
         const gl::Program& links = use(pass, BloodShader::link);
         bind(pass, links, "u_links", seams_->links.texture());
         pass.bind(links, "u_position", "position");
@@ -128,7 +128,7 @@ void BloodGpu::find_seams(const Pass& pass) {
         links = seam_links(position, seam);
         jumps = seam_jumps(position, seam);
     }
-    seams_.emplace(make_seams(*gl_, links, size_));
+    seams_.emplace(make_seams(*gl_, links, size_, BloodBlocks::block_side));
     blocks_.lie_on(position, links, jumps);
 }
 
@@ -247,13 +247,14 @@ void BloodGpu::cross_seams(const Pass& pass, const BloodMedium& medium) const {
     bind(pass, program, "u_pulls", seams_->pulls);
     blocks_.bind_plan(pass, program);
     program.set("u_flow", medium.flow);
-    draw_into(pass, seams_->came_target, gl::overwrite_state);
-    pass.draw_fullscreen();
+    program.set("u_size", glm::vec2(seams_->came.width(), seams_->came.height()));
+    draw_into(pass, seams_->came_target, {.program_point_size = true});
+    pass.draw_generated(GL_POINTS, seams_->chunks, 1);
 }
 
 void BloodGpu::step_film(const Pass& pass, const BloodMedium& medium) const {
     const bool tools = !medium.tools.empty();
-    const bool seams = !seams_->empty;
+    const bool seams = !seams_->empty();
     if (seams) {
         cross_seams(pass, medium);
     }

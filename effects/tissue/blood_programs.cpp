@@ -15,7 +15,7 @@ std::vector<ProgramDesc> blood_programs() {
             {tile, "tissue/blood_film.frag", {"STEP", "TOOLS"}},
             {tile, "tissue/blood_film.frag", {"STEP", "TOOLS", "SEAMS"}},
             {tile, "tissue/blood_gutter.frag", {}},
-            {whole, "tissue/blood_seam.frag", {}},
+            {"tissue/blood_seam.vert", "tissue/blood_seam.frag", {}},
             {whole, "tissue/blood_move.frag", {}},
             {whole, "tissue/blood_move.frag", {"TOOLS"}},
             {"tissue/blood_deposit.vert", "tissue/blood_add.frag", {}},

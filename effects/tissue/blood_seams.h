@@ -18,10 +18,13 @@ struct BloodSeams {
     gl::Framebuffer pulls_target;
     gl::Texture came;  ///< into each of `cells` in a step [mm]
     gl::Framebuffer came_target;
-    bool empty = true;
+    int chunks = 0;  ///< of `cells`: squares of it with cells of one block each
+
+    [[nodiscard]] bool empty() const { return chunks == 0; }
 };
 
-/// `size`: texels along each side of the bake.
-[[nodiscard]] BloodSeams make_seams(const gl::Functions& gl, std::span<const SeamLink> links, int size);
+/// `size`: texels along each side of the bake; `block_side`: of BloodBlocks.
+[[nodiscard]] BloodSeams make_seams(const gl::Functions& gl, std::span<const SeamLink> links, int size,
+                                    int block_side);
 
 }  // namespace viscera::tissue

@@ -2,7 +2,7 @@
 // Marks tiles and blocks by points: those in which drops are, or those across seams from marked ones.
 #ifdef SEAMS
 #include "tissue/list.glsl"
-uniform sampler2D u_pairs;   // one side, other side: x, y each, of tiles or blocks that a seam joins
+uniform sampler2D u_pairs;   // one side, other side: x, y each, of tiles or blocks that a seam joins; half more: far from it
 uniform sampler2D u_marked;
 #ifdef BLOCKS
 uniform sampler2D u_reach;  // of tiles: to be stepped
@@ -25,8 +25,7 @@ void main() {
 #ifdef BLOCKS
     float most = texelFetch(u_marked, ivec2(pair.xy), 0).r;
     // A thin film goes no farther than to the blocks that the seam leads to.
-    gl_PointSize = most > 0.9 ? 3.0 : 1.0;
-    most = min(most, texelFetch(u_reach, ivec2(pair.zw) / 4, 0).r);
+    most = fract(pair.w) > 0.0 && most < 0.9 ? 0.0 : min(most, texelFetch(u_reach, ivec2(pair.zw) / 4, 0).r);
 #else
     ivec2 last = textureSize(u_marked, 0) - 1;
     float most = 0.0;
@@ -35,7 +34,7 @@ void main() {
     }
 #endif
     if (most > 0.5) {
-        gl_Position = vec4(2.0 * (pair.zw + 0.5) / vec2(textureSize(u_marked, 0)) - 1.0, 0.0, 1.0);
+        gl_Position = vec4(2.0 * (floor(pair.zw) + 0.5) / vec2(textureSize(u_marked, 0)) - 1.0, 0.0, 1.0);
     }
 #else
     ivec2 size = textureSize(u_drops, 0);

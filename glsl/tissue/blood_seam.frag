@@ -5,7 +5,7 @@
 #include "tissue/list.glsl"
 // What comes across seams in a step, for each cell that lies at one.
 uniform sampler2D u_film;
-uniform sampler2D u_cells;  // at seams: x, y, where its parts begin in u_pulls, 1; in rows, as all lists
+uniform sampler2D u_cells;  // at seams: x, y, where its parts begin in u_pulls, 1; in chunks of 4 x 4, each of one block
 uniform sampler2D u_pulls;  // of blood_link.frag
 layout(location = 0) out float o_came;  // [mm]
 
@@ -15,7 +15,7 @@ void main() {
     vec4 film = texelFetch(u_film, here, 0);
     int part = int(item.z);
     float came = 0.0;  // [mm^3]
-    bool more = item.w > 0.0 && film.w > 0.0 && steps_at(here);
+    bool more = item.w > 0.0 && film.w > 0.0;
     while (more) {
         vec4 pull = list_item(u_pulls, part);
         ivec2 cell = cell_of_part(pull);

@@ -162,6 +162,40 @@ TEST(BloodDrops, GoOnAcrossASeam) {
     }
 }
 
+TEST(BloodDrops, LargeOnesAreSeenWholeAcrossASeam) {
+    // 17 texels from middle to edge, with its middle a little before the seam.
+    const auto plane = [](glm::dvec2 at) { return glm::dvec3(at, 0.0); };
+    const SurfaceChart whole{.high = {96.0, 96.0}, .cells = {24, 24}};
+    const std::array<SurfaceChart, 2> cut{
+        SurfaceChart{.high = {48.0, 96.0}, .cells = {12, 24}},
+        SurfaceChart{.low = {48.0, 0.0}, .high = {96.0, 96.0}, .origin_px = {20.0, 8.0}, .cells = {12, 24}}};
+    std::array<double, 2> seen{};
+    for (std::size_t i = 0; i < 2; ++i) {
+        BloodStage stage(128);
+        stage.surface(i == 0 ? std::span(&whole, 1) : std::span(cut), plane);
+        stage.gravity = {{"gravity_m_s2", {0, 0, -9.80665}}};
+        stage.blood = {{"liquid", {{"drop_mm3", 800.0}, {"drop_aspect", 0.1}, {"max_drops", 256}}},
+                       {"wounds",
+                        {{{"position_mm", {45.5, 48.5, 0}},
+                          {"radius_mm", 0.0},
+                          {"rate_mm3_s", 120.0 * 800.0},
+                          {"stop_s", 1.0 / 120.0}}}}};
+        stage.load();
+        stage.run(0.0, 1.0 / 120.0, 1.0 / 120.0);
+        const auto surface = stage.baked();
+        const Image height = stage.read("tissue.blood_height");
+        for (int y = 0; y < stage.size; ++y) {
+            for (int x = 0; x < stage.size; ++x) {
+                const bool cell = surface.kind[surface.index(x, y)] == reference::TissueSurface::Texel::cell;
+                seen[i] += cell ? static_cast<double>(height.at(x, y, 0)) : 0.0;
+            }
+        }
+    }
+    std::printf("  seen whole: %.1f mm^3, across a seam: %.1f mm^3\n", seen[0], seen[1]);
+    EXPECT_GT(seen[0], 600.0);
+    EXPECT_NEAR(seen[1] / seen[0], 1.0, 0.01);
+}
+
 TEST(BloodDrops, TheTrailOfManyDropsIsSmooth) {
     // Down a wall, with texels of 0.25 mm: drops are some 3 mm across.
     BloodStage stage(128);
@@ -223,6 +257,24 @@ TEST(BloodVolume, IsKeptForTenThousandSteps) {
     std::printf("  %.6f mm^3 at the start, drift %+.2e after 10000 steps\n", start, end.film / start - 1.0);
     EXPECT_NEAR(end.film / start, 1.0, 1e-6);
     EXPECT_EQ(end.gone, 0.0);
+}
+
+TEST(BloodVolume, IsKeptWhereACreepingFilmMeetsOneThatIsDisturbed) {
+    // It gets thinner everywhere by 3e-4 mm/s at most, so tiles rest through which blood passes.
+    const SurfaceChart chart{.high = {240.0, 24.0}, .cells = {60, 6}};
+    BloodStage stage(256);
+    stage.surface(std::span(&chart, 1), [](glm::dvec2 at) { return glm::dvec3(at, -0.05 * at.x); });
+    stage.gravity = {{"gravity_m_s2", {0, 0, -9.80665}}, {"open_edges", false}};
+    stage.blood = {{"liquid", {{"steps_per_s", 120.0}, {"max_drops", 1024}}},
+                   {"wounds", {{{"position_mm", {70, 12, -3.5}}, {"rate_mm3_s", 20.0}, {"start_s", 1.0}}}}};
+    stage.spill([](const glm::dvec3& p) { return 0.06 + 2e-4 * p.x; });
+    stage.frame(0.0);
+    const double start = stage.account().film;
+    stage.run(0.0, 5.0, 0.1);
+    const BloodAccount end = stage.account();
+    const double off = end.kept() / (start + end.given) - 1.0;
+    std::printf("  %.3f mm^3 at the start, %.3f given, off by %+.1e\n", start, end.given, off);
+    EXPECT_NEAR(off, 0.0, 1e-6);
 }
 
 TEST(BloodVolume, IsAccountedForWhateverHappens) {
