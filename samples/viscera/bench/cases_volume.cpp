@@ -73,7 +73,10 @@ void against_ceiling(Lab& lab, ComputeUse compute, const std::string& group) {
 /// Colours as they are against one of their channels.
 void of_colours(Lab& lab) {
     VolumeScene scene(lab, "cryosections");
-    scene.change({{"shading", {{"enabled", false}}}, {"sampling", sampling("midpoint", 1.0, true)}});
+    // Less dense than to be looked at: what is opaque within a voxel only shows where the first sample lies.
+    scene.change({{"shading", {{"enabled", false}}},
+                  {"accumulate", {{"opacity", 40}}},
+                  {"sampling", sampling("midpoint", 1.0, true)}});
     const json lit{{"shading", {{"enabled", true}}}};
     const std::vector<Judged> judged{
         {{"accumulate, one channel", {{"accumulate", {{"channels", json::array()}}}}}, exact_composite()},

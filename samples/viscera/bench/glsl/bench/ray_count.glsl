@@ -5,6 +5,13 @@ float counted_sample(vec3 place) {
     ++samples_taken;
     return sample_volume(place);
 }
+#ifdef COLOURS
+vec4 counted_colour(vec3 place) {
+    ++samples_taken;
+    return sample_colour(place);
+}
+#define sample_colour counted_colour
+#endif
 #define sample_volume counted_sample
 #include "volume/ray_cast_body.glsl"
 
