@@ -81,9 +81,9 @@ void LabelParams::visit(ParamVisitor& v) {
 }
 
 int LabelParams::ramp_count() const {
-    const std::vector<const SegmentLook*> all = looks(*this);
-    return static_cast<int>(
-        std::ranges::count_if(all, [](const SegmentLook* look) { return !look->points.empty(); }));
+    const auto own =
+        std::ranges::count_if(segments, [](const Segment& segment) { return !segment.look.points.empty(); });
+    return static_cast<int>(own) + (others.points.empty() ? 0 : 1);
 }
 
 void LabelParams::validate() const {
