@@ -176,92 +176,6 @@ void mark_visible(std::span<const float> min, std::span<const float> max,
     }
 }
 
-/// Distances of a grid with a margin around it, in which every brick is as far as can be told: no neighbour
-/// then needs a test of whether it exists.
-class DistanceGrid {
-  public:
-    /// As wide as a row's longest step below, in bytes.
-    static constexpr int margin_x = 16;
-
-    DistanceGrid(const glm::ivec3& dims, std::vector<std::uint8_t>& values, std::vector<std::uint8_t>& row)
-        : dims_(dims), stride_(dims.x + 2 * margin_x), values_(values), row_(row) {
-        values_.assign(static_cast<std::size_t>(stride_) * static_cast<std::size_t>(dims.y + 2) *
-                           static_cast<std::size_t>(dims.z + 2),
-                       distance_reach);
-        row_.assign(2 * static_cast<std::size_t>(stride_), distance_reach);
-    }
-
-    /// Row of bricks, without its margin.
-    [[nodiscard]] std::uint8_t* row(int y, int z) const {
-        const std::ptrdiff_t line = y + 1 + static_cast<std::ptrdiff_t>(dims_.y + 2) * (z + 1);
-        return values_.data() + line * stride_ + margin_x;
-    }
-
-    /// Spreads the distances from the bricks where they are 0. A shortest path of Chebyshev steps may take
-    /// its steps in any order: first those along its row, then those forward through memory, then those
-    /// back. So one pass each finds it.
-    void spread() const {
-        for (int z = 0; z < dims_.z; ++z) {
-            for (int y = 0; y < dims_.y; ++y) {
-                spread_along(row(y, z));
-                approach(row(y, z), {row(y - 1, z), row(y - 1, z - 1), row(y, z - 1), row(y + 1, z - 1)});
-            }
-        }
-        for (int z = dims_.z - 1; z >= 0; --z) {
-            for (int y = dims_.y - 1; y >= 0; --y) {
-                approach(row(y, z), {row(y + 1, z), row(y + 1, z + 1), row(y, z + 1), row(y - 1, z + 1)});
-            }
-        }
-    }
-
-  private:
-    struct Neighbours {
-        const std::uint8_t *a, *b, *c, *d;
-    };
-
-    /// Lets the bricks of a row know how near the others of the row are: steps of 1, 2, 4, 8 and 16 in both
-    /// directions reach as far as is told, a whole row at a time.
-    void spread_along(std::uint8_t* row) const {
-        const int count = dims_.x;
-        std::uint8_t* now = row_.data() + margin_x;
-        std::uint8_t* next = now + stride_;
-        std::copy_n(row, count, now);
-        for (int step = 1; step <= margin_x; step *= 2) {
-            const std::uint8_t* before = now - step;
-            const std::uint8_t* after = now + step;
-            for (int x = 0; x < count; ++x) {
-                const auto side = static_cast<std::uint8_t>(std::min(before[x], after[x]) + step);
-                next[x] = std::min(now[x], side);
-            }
-            std::swap(now, next);
-        }
-        std::copy_n(now, count, row);
-    }
-
-    /// Lets a row know how near its neighbour rows are.
-    void approach(std::uint8_t* row, const Neighbours& near) const {
-        const int count = dims_.x;
-        std::uint8_t* nearest = row_.data() + margin_x;
-        for (int x = -1; x <= count; ++x) {
-            nearest[x] = std::min(std::min(near.a[x], near.b[x]), std::min(near.c[x], near.d[x]));
-        }
-        for (int x = 0; x < count; ++x) {
-            const std::uint8_t beside = std::min(std::min(nearest[x - 1], nearest[x + 1]), nearest[x]);
-            row[x] = std::min(row[x], static_cast<std::uint8_t>(beside + 1));
-        }
-    }
-
-    glm::ivec3 dims_;
-    int stride_;
-    std::vector<std::uint8_t>& values_;
-    std::vector<std::uint8_t>& row_;  ///< two rows to work in, with their margins
-};
-static_assert(2 * DistanceGrid::margin_x > distance_reach);
-
-}  // namespace
-
-namespace {
-
 void check(const Volume& volume, int channel, int size, int border) {
     if (channel < 0 || channel >= volume.channels) {
         throw Error(ErrorCode::usage, volume.source, "there is no channel " + std::to_string(channel));
@@ -384,38 +298,6 @@ void find_occupied(const BrickGrid& bricks, std::span<const StoredRange> visible
                          {&occupied[begin], width});
         }
     }
-}
-
-void distance_to_others(glm::ivec3 dims, std::span<const std::uint8_t> kinds, int kind,
-                        std::vector<std::uint8_t>& distance, DistanceScratch& scratch) {
-    const bool any = dims.x > 0 && dims.y > 0 && dims.z > 0;
-    if (kinds.size() != (any ? at(dims - 1, dims) + 1 : 0)) {
-        throw Error(ErrorCode::usage, "distance_to_others", "kinds and grid differ in size");
-    }
-    distance.resize(kinds.size());
-    if (!any) {
-        return;
-    }
-    const DistanceGrid grid(dims, scratch.grid, scratch.row);
-    const auto for_rows = [&](const auto& act) {
-        for (int z = 0; z < dims.z; ++z) {
-            for (int y = 0; y < dims.y; ++y) {
-                act(at({0, y, z}, dims), grid.row(y, z));
-            }
-        }
-    };
-    const auto width = static_cast<std::size_t>(dims.x);
-    for_rows([&](std::size_t begin, std::uint8_t* row) {
-        for (std::size_t x = 0; x < width; ++x) {
-            row[x] = kinds[begin + x] == kind ? distance_reach : 0;
-        }
-    });
-    grid.spread();
-    for_rows([&](std::size_t begin, const std::uint8_t* row) {
-        for (std::size_t x = 0; x < width; ++x) {
-            distance[begin + x] = kinds[begin + x] == kind ? row[x] : distance[begin + x];
-        }
-    });
 }
 
 double occupancy(std::span<const std::uint8_t> occupied) {

@@ -63,18 +63,6 @@ inline constexpr float catmull_rom_overshoot = 0.4765625F;
 void find_occupied(const BrickGrid& bricks, std::span<const StoredRange> visible, const VoxelBox& crop,
                    std::vector<std::uint8_t>& occupied, float overshoot = 0.0F);
 
-/// Chebyshev distance in bricks, cut at `reach`, from each brick of one kind to the nearest of another: all
-/// bricks nearer than that are of its own kind, or outside the grid. At least 1. `scratch` is kept between
-/// calls so that nothing is allocated.
-struct DistanceScratch {
-    std::vector<std::uint8_t> grid, row;
-};
-inline constexpr int distance_reach = 31;
-/// `kinds`: one byte a brick, x fastest; distances of other kinds than `kind` stay as they are. Throws
-/// Error(usage) when the number of kinds is not that of the grid.
-void distance_to_others(glm::ivec3 dims, std::span<const std::uint8_t> kinds, int kind,
-                        std::vector<std::uint8_t>& distance, DistanceScratch& scratch);
-
 /// Share of occupied bricks, in [0, 1].
 [[nodiscard]] double occupancy(std::span<const std::uint8_t> occupied);
 

@@ -201,6 +201,11 @@ glm::dvec4 ClassificationTable::mixed(double texel) const {
     return glm::mix(glm::dvec4(entries[low]), glm::dvec4(entries[high]), at - static_cast<double>(low));
 }
 
+std::size_t ClassificationTable::first_seen() const {
+    const auto seen = [](const glm::vec4& entry) { return entry.a > 0.0F; };
+    return static_cast<std::size_t>(std::ranges::find_if(entries, seen) - entries.begin());
+}
+
 ClassificationTable tabulate(const ExtinctionKnots& knots, const TexelRange& range, int entries) {
     const int count = std::max(entries, 2);
     const double width = range.high - range.low;

@@ -64,6 +64,8 @@ struct ClassificationTable {
     std::vector<glm::vec4> premultiplied;  ///< extinction * (red, green, blue, 1)
     glm::dvec2 place{0.0};                 ///< x, y
 
+    /// The first entry with extinction; that behind the last one where there is none.
+    [[nodiscard]] std::size_t first_seen() const;
     /// The mix of the two entries beside a texel.
     [[nodiscard]] glm::dvec4 mixed(double texel) const;
 };

@@ -19,9 +19,6 @@ namespace {
 
 constexpr int blue_noise_size = 32;
 constexpr int most_integrated_ramps = 255;
-// On an H200, whose compute shaders take 300 billion samples/s, skipping takes 0.7 times as long at 5 %
-// occupied bricks, 1.8 times as long at 25 % (viscera bench skipping).
-constexpr double compute_skips_below = 0.1;
 
 RayFunction function_for(Technique technique) {
     switch (technique) {
@@ -242,6 +239,7 @@ void RayCastEffect::make_table(const gl::Functions& gl, const TexelMap& stored_o
                                         "transfer function"));
     table_->upload(std::as_bytes(std::span(table.entries)));
     table_place_ = table.place;
+    table_seen_ = static_cast<float>(table.first_seen()) - 1.0F;
     if (params_.sampling.scheme == Scheme::preintegrated && !projects()) {
         make_slabs(gl, stored_of_texel);
     }
@@ -396,12 +394,6 @@ void RayCastEffect::draw(const Pass& pass) {
         table_key_ = table_key;
     }
     variant_.compute = pass.compute("colour");
-    // Where samples cost a fraction of what it costs to find out that they are not needed, only the emptiest
-    // volumes gain; the picture is the same.
-    if (variant_.compute && variant_.function != RayFunction::isosurface &&
-        skip_map_.occupancy() > compute_skips_below) {
-        variant_.skipping = Skipping::none;
-    }
     const RayFrame frame = make_ray_frame(pass.frame().eye(), space_.local_to_world, space_.low, space_.high);
     if (variant_.fills) {
         fill_in(pass, frame);
@@ -428,7 +420,8 @@ void RayCastEffect::draw(const Pass& pass) {
         volume::bind(params_.isosurface, TexelMap{volume.slope * map.scale, volume.value_of(map.offset)},
                      params_.sampling.termination, program);
     }
-    program.set("u_transfer_place", glm::vec2(table_place_));
+    program.set("u_transfer_seen", table_seen_);
+    program.set("u_transfer_place", glm::vec3(table_place_, table_->width() - 1));
     if (slabs_) {
         slabs_->bind(pass, program);
     }

@@ -105,6 +105,7 @@ class RayCastEffect final : public Effect {
     std::optional<gl::Texture> table_;
     std::uint64_t table_key_ = 0;
     glm::dvec2 table_place_{0.0};
+    float table_seen_ = 0.0F;  ///< table entries before it show nothing
 };
 
 }  // namespace viscera::volume

@@ -10,11 +10,6 @@
 #include "engine/core/hash.h"
 
 namespace viscera::volume {
-namespace {
-
-constexpr int kind_step = distance_reach + 1;  ///< between the texels of two kinds
-
-}  // namespace
 
 BrickRows brick_rows(const Space& space, int size, double reach, double support) {
     constexpr double rounding = 0.02;  // of places against brick faces [voxels], far more than there is
@@ -181,6 +176,10 @@ void SkipMap::update(std::span<const BrickLayer> layers, const VoxelBox& crop, c
     kind_ = occupied_;
     const int kinds = find_smooth(bricks, smooth, overshoot);
     any_smooth_ = kinds > 2;
+    curved_ = bricks.rows.angle_axis >= 0;
+    if (!curved_) {
+        return sizes_ahead(dims_, kind_, texels_, ahead_);
+    }
     for (int kind = 0; kind < kinds; ++kind) {
         distance_to_others(dims_, kind_, kind, texels_, scratch_);
     }
@@ -206,13 +205,13 @@ int SkipMap::find_smooth(const BrickGrid& bricks, const SmoothRule& rule, float 
         for (std::size_t i = 0; i < smooth_.size(); ++i) {
             opened_[i] = static_cast<std::uint8_t>(smooth_[i] >= level);
         }
-        distance_to_others(dims_, opened_, 1, texels_, scratch_);
+        distance_to_others(dims_, opened_, 1, distance_, scratch_);
         for (std::size_t i = 0; i < opened_.size(); ++i) {
-            opened_[i] = static_cast<std::uint8_t>(opened_[i] != 0 && texels_[i] > reach);
+            opened_[i] = static_cast<std::uint8_t>(opened_[i] != 0 && distance_[i] > reach);
         }
-        distance_to_others(dims_, opened_, 0, texels_, scratch_);
+        distance_to_others(dims_, opened_, 0, distance_, scratch_);
         for (std::size_t i = 0; i < opened_.size(); ++i) {
-            if (opened_[i] != 0 || texels_[i] <= reach) {
+            if (opened_[i] != 0 || distance_[i] <= reach) {
                 kind_[i] = static_cast<std::uint8_t>(1 + level);
                 kinds = 2 + level;
             }
@@ -222,7 +221,8 @@ int SkipMap::find_smooth(const BrickGrid& bricks, const SmoothRule& rule, float 
 }
 
 const gl::Texture& SkipMap::texture(const gl::Functions& gl) {
-    const gl::Extent extent{dims_.x, dims_.y, dims_.z};
+    const int blocks = curved_ ? 1 : 2;
+    const gl::Extent extent{blocks * dims_.x, blocks * dims_.y, blocks * dims_.z};
     if (!texture_ || texture_->extent() != extent) {
         texture_.emplace(gl::Texture::make_3d(gl, extent, gl::r8ui_format, "distances of bricks"));
         uploaded_ = 0;

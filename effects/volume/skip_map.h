@@ -3,6 +3,7 @@
 #include <array>
 #include <optional>
 
+#include "effects/volume/brick_distances.h"
 #include "effects/volume/bricks.h"
 #include "effects/volume/classification.h"
 #include "effects/volume/source.h"
@@ -65,8 +66,9 @@ class SkipMap {
     [[nodiscard]] const VoxelBox& occupied_box() const { return box_; }
     /// Whether there are bricks in which long slabs do.
     [[nodiscard]] bool any_smooth() const { return any_smooth_; }
-    /// A texture of unsigned bytes: 32 * kind (0 empty, 1 occupied, 1 + i: slabs of 4^i do) + distance in
-    /// bricks to the nearest of another kind.
+    /// A texture of unsigned bytes: 32 * kind (0 empty, 1 occupied, 1 + i: slabs of 4^i do) + how many bricks
+    /// are of that kind. Rays of Cartesian volumes are straight: sizes_ahead(). Those of curvilinear ones may
+    /// turn back: distance_to_others().
     [[nodiscard]] const gl::Texture& texture(const gl::Functions& gl);
 
   private:
@@ -82,8 +84,11 @@ class SkipMap {
     std::vector<std::uint8_t> kind_;
     std::vector<std::uint8_t> smooth_;
     std::vector<std::uint8_t> opened_;
+    std::vector<std::uint8_t> distance_;
     std::vector<std::uint8_t> texels_;
+    bool curved_ = false;
     DistanceScratch scratch_;
+    AheadScratch ahead_;
     std::optional<gl::Texture> texture_;
     std::uint64_t uploaded_ = 0;
 };

@@ -195,7 +195,8 @@ void SliceEffect::draw(const Pass& pass) {
               space_.shape.wrap && !gpu.is_atlas() ? gl::Wrap::repeat : gl::Wrap::clamp);
     set_places(program, space_);
     pass.bind(program, "u_transfer", *table_, gl::Filter::nearest);
-    program.set("u_transfer_place", glm::vec2(table_place_));
+    program.set("u_transfer_seen", 0.0F);  // colours are shown whatever their opacity
+    program.set("u_transfer_place", glm::vec3(table_place_, table_->width() - 1));
     set_plane(pass, program);
     if (!in_camera()) {
         pass.draw_fullscreen();

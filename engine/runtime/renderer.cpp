@@ -37,6 +37,12 @@ ContextInfo describe(const gl::Capabilities& capabilities) {
     return info;
 }
 
+/// HARDWARE: a branch that no pixel of a group takes costs nothing. Software renderers run both sides of
+/// each.
+std::vector<std::string> shader_defines(const gl::Capabilities& capabilities) {
+    return capabilities.software ? std::vector<std::string>{} : std::vector<std::string>{"HARDWARE"};
+}
+
 bool uses_compute(ComputeUse wanted, const gl::Capabilities& capabilities, Log& log) {
     if (wanted == ComputeUse::on && !capabilities.compute) {
         log.info("compute shaders are wanted but need OpenGL 4.3, the context is " + capabilities.version +
@@ -60,7 +66,8 @@ class Renderer::Impl {
           host_state_(*gl_),
           entry_(host_state_, log_),
           assets_(log_, std::move(options.progress), std::move(options.cache_folder)),
-          shaders_(*gl_, options.shaders ? options.shaders : embedded_shader_reader(), log_),
+          shaders_(*gl_, options.shaders ? options.shaders : embedded_shader_reader(),
+                   shader_defines(capabilities_), log_),
           samplers_(*gl_),
           black_(make_black(*gl_)),
           no_vertices_(*gl_),

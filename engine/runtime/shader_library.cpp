@@ -36,7 +36,9 @@ int ShaderLibrary::reload(ShaderReader reader) {
 }
 
 std::unique_ptr<gl::Program> ShaderLibrary::compile(const ProgramDesc& desc) const {
-    const auto expand = [&](const std::string& file) { return expand_shader(file, desc.defines, reader_); };
+    std::vector<std::string> defines = defines_;
+    defines.insert(defines.end(), desc.defines.begin(), desc.defines.end());
+    const auto expand = [&](const std::string& file) { return expand_shader(file, defines, reader_); };
     auto program = std::make_unique<gl::Program>(
         desc.compute.empty() ? gl::Program(gl_, expand(desc.vertex), expand(desc.fragment), to_string(desc))
                              : gl::Program::make_compute(gl_, expand(desc.compute), to_string(desc)));

@@ -2,6 +2,8 @@
 
 #include <deque>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "engine/core/log.h"
 #include "engine/core/shader_source.h"
@@ -17,8 +19,9 @@ class ShaderLibrary {
         std::unique_ptr<gl::Program> program;  ///< none until first used
     };
 
-    ShaderLibrary(const gl::Functions& gl, ShaderReader reader, Log& log)
-        : gl_(gl), reader_(std::move(reader)), log_(log) {}
+    /// `defines`: of all programs, before their own.
+    ShaderLibrary(const gl::Functions& gl, ShaderReader reader, std::vector<std::string> defines, Log& log)
+        : gl_(gl), reader_(std::move(reader)), defines_(std::move(defines)), log_(log) {}
 
     /// The place of a program; stays where it is as long as the library lives.
     [[nodiscard]] Entry& entry(const ProgramDesc& desc);
@@ -33,6 +36,7 @@ class ShaderLibrary {
 
     const gl::Functions& gl_;
     ShaderReader reader_;
+    std::vector<std::string> defines_;
     Log& log_;
     std::deque<Entry> entries_;
 };

@@ -70,12 +70,11 @@ int ramp_of(int label) {
 vec4 classify_segment(float value, int label) {
 #ifdef LABEL_RAMPS
     int row = ramp_of(label);
-    float last = float(textureSize(u_label_ramps, 0).x - 1);
-    float place = clamp(value * u_transfer_place.x + u_transfer_place.y, 0.0, last);
+    float place = clamp(value * u_transfer_place.x + u_transfer_place.y, 0.0, u_transfer_place.z);
 #ifdef TRANSFER_LINEAR
     int entry = int(place);
     vec4 c = mix(texelFetch(u_label_ramps, ivec2(entry, row), 0),
-                 texelFetch(u_label_ramps, ivec2(min(entry + 1, int(last)), row), 0), place - float(entry));
+                 texelFetch(u_label_ramps, ivec2(min(entry + 1, int(u_transfer_place.z)), row), 0), place - float(entry));
 #else
     vec4 c = texelFetch(u_label_ramps, ivec2(int(place + 0.5), row), 0);
 #endif

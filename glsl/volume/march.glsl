@@ -10,6 +10,11 @@ float slab_mm;  // of this ray, whose slabs lie on a lattice of their own: volum
 #endif
 uniform int u_slab_limit;
 
+#ifdef HARDWARE
+const int most_at_once = 8;  // slabs
+#else
+const int most_at_once = 12;
+#endif
 const int most_joined = 64;  // slabs that are one where the transfer function does not change
 
 // Slabs are found from their number, never by adding up: the same slab comes out the same however it was reached.
@@ -17,6 +22,12 @@ Slab slab_at(float start, vec3 first, vec3 extent, int k, float number, float sl
     float part = min(slabs - float(k), number);
     float middle = float(k) + (0.5 + offset) * part;
     return Slab(first + middle * extent, extent * part, slab_mm * part, start + middle * slab_mm);
+}
+
+// A slab belongs to the brick of its centre, whose range covers the whole slab: its border is that wide. The last slab ends
+// with the interval: the centre of a whole one may lie outside the volume or the crop.
+float middle_of(int k, float slabs) {
+    return min(float(k) + 0.5, 0.5 * (float(k) + slabs));
 }
 
 void march(Ray ray, vec2 interval, float offset, inout State state) {
@@ -30,20 +41,40 @@ void march(Ray ray, vec2 interval, float offset, inout State state) {
 #ifdef SKIP
     Leaper leaper = make_leaper(first, extent);
     vec2 span = clamp(occupied_span(leaper), 0.0, float(count));
-    int k = max(int(span.x) - 1, 0);
+    int begin = max(int(span.x) - 1, 0);
     int last = min(int(span.y) + 1, count);
+#if defined(HARDWARE) && !defined(ADAPTIVE)
+    // Pixels side by side go through the same slabs at the same time, whatever each of them has to see: the texture unit then
+    // finds their voxels near each other, and a branch that none of them takes costs nothing.
+    int empty_until = begin;
+    for (int k = 0; k < last; k += most_at_once) {
+        int next = min(k + most_at_once, last);
+        int from = max(k, empty_until);
+        if (from < next) {
+            Run run = run_from(leaper, middle_of(from, slabs));
+            from = run.kind == run_empty ? from + 1 + int(min(run.extent, float(count))) : from;
+            empty_until = from;
+        }
+        for (; from < next; ++from) {
+            if (take_slab(state, slab_at(interval.x, first, extent, from, 1.0, slabs, offset))) {
+                from = last;
+                k = last;
+            }
+        }
+    }
+#else
+    int k = begin;
+    int end = k;
+    uint kind = run_empty;
     while (k < last) {
         // Leaping and sampling are loops of their own: in one loop every step would pay for both. Leaping finds all of the
         // next stretch in which slabs are sampled, from its first brick to its last, since pixels that are computed side by
         // side wait for each other at the end of each loop. Loops end by their condition alone: each `break` is one more
         // mask to keep on software renderers.
-        int end = k;
-        uint kind = run_empty;
-        bool leaping = true;
+        bool leaping = k >= end;
+        kind = leaping ? run_empty : kind;
         while (leaping) {
-            // A slab belongs to the brick of its centre, whose range covers the whole slab: its border is that wide. The last
-            // slab ends with the interval: the centre of a whole one may lie outside the volume or the crop.
-            Run run = run_from(leaper, min(float(end) + 0.5, 0.5 * (float(end) + slabs)));
+            Run run = run_from(leaper, middle_of(end, slabs));
             bool goes_on = run.kind == kind;
             bool begins = kind == run_empty;
             end = goes_on || begins ? min(end + 1 + int(min(run.extent, float(count))), last) : end;
@@ -51,7 +82,9 @@ void march(Ray ray, vec2 interval, float offset, inout State state) {
             kind = begins ? run.kind : kind;
             leaping = (goes_on || begins) && end < last;
         }
-        while (k < end) {
+        // A few slabs at a time: a pixel with a long stretch then does not keep its neighbours waiting that have several short ones.
+        int pause = min(end, k + most_at_once);
+        while (k < pause) {
 #ifdef ADAPTIVE
             // Long slabs lie on lattices of their own, so that where a run begins does not move them.
             int level = int(kind) - 1;
@@ -67,6 +100,7 @@ void march(Ray ray, vec2 interval, float offset, inout State state) {
             k = stop ? count : k + number;
         }
     }
+#endif
 #else
     for (int k = 0; k < count; ++k) {
         bool stop = take_slab(state, slab_at(interval.x, first, extent, k, 1.0, slabs, offset));

@@ -50,8 +50,20 @@ class Stages {
   public:
     Stages(const TempFolder& folder, const ShaderReader& reader) : folder_(folder), reader_(reader) {}
 
-    std::string add(const std::string& file, const std::vector<std::string>& defines) {
+    /// The stage's name as it is compiled for software renderers; that for hardware is added where it
+    /// differs.
+    std::string add(const std::string& file, std::vector<std::string> defines) {
         ShaderSource source = expand_shader(file, defines, reader_);
+        if (source.text.find("HARDWARE") != std::string::npos) {
+            defines.emplace_back("HARDWARE");
+            (void)add(file, expand_shader(file, defines, reader_));
+        }
+        return add(file, std::move(source));
+    }
+    [[nodiscard]] const std::vector<StageFile>& stages() const { return stages_; }
+
+  private:
+    std::string add(const std::string& file, ShaderSource source) {
         const std::string extension = file.substr(file.rfind('.'));
         const auto [found, is_new] =
             names_.try_emplace(source.text + extension, "s" + std::to_string(names_.size()) + extension);
@@ -61,9 +73,7 @@ class Stages {
         }
         return found->second;
     }
-    [[nodiscard]] const std::vector<StageFile>& stages() const { return stages_; }
 
-  private:
     const TempFolder& folder_;
     const ShaderReader& reader_;
     std::map<std::string, std::string> names_;  ///< by text and kind

@@ -23,8 +23,8 @@ struct Verdict {
 /// Every program of every registered effect, and the presenter's.
 [[nodiscard]] std::vector<ProgramDesc> all_programs();
 
-/// Expands all programs and has each stage compiled, and each vertex stage linked with its fragment stage.
-/// Stages that expand to the same text are looked at once.
+/// Expands all programs, for software renderers and for hardware, and has each stage compiled, and each
+/// vertex stage linked with its fragment stage. Stages that expand to the same text are looked at once.
 [[nodiscard]] Verdict validate(const std::filesystem::path& validator,
                                const std::vector<ProgramDesc>& programs, const ShaderReader& reader);
 

@@ -35,15 +35,21 @@ class Skipping : public testing::Test {
         }
         return count;
     }
-    void expect_same(nlohmann::json parameters, const Look& look, int least_lit = 100) {
+    Shot expect_same_by(VolumeStage& stage, nlohmann::json parameters, const Look& look) {
         parameters["sampling"]["skip"] = false;
-        const Shot whole = stage_.cast(vessels_, parameters, look, size_);
+        Shot whole = stage.cast(vessels_, parameters, look, size_);
         parameters["sampling"]["skip"] = true;
-        const Shot skipped = stage_.cast(vessels_, parameters, look, size_);
+        const Shot skipped = stage.cast(vessels_, parameters, look, size_);
         EXPECT_TRUE(same_bits(whole, skipped))
             << parameters.dump() << " off by " << difference(whole.image, skipped.image).max << " in "
             << difference(whole.image, skipped.image).above << " pixels";
+        return whole;
+    }
+    void expect_same(const nlohmann::json& parameters, const Look& look, int least_lit = 100) {
+        const Shot whole = expect_same_by(stage_, parameters, look);
         EXPECT_GE(lit(whole), least_lit) << parameters.dump();
+        SCOPED_TRACE("as it is compiled for hardware");
+        EXPECT_LE(difference(whole.image, expect_same_by(hardware_, parameters, look).image).max, 1e-6);
     }
     static nlohmann::json parameters(std::string_view function, std::string_view scheme,
                                      std::string_view filter) {
@@ -60,6 +66,7 @@ class Skipping : public testing::Test {
     }
 
     VolumeStage stage_;
+    VolumeStage hardware_{as_on_hardware()};
     LiveVolume vessels_{vessel_volume(40, 2.0, 9)};
     Look look_{.eye_mm = {150, -190, 90}, .fov_deg = 24};
     glm::ivec2 size_{64};

@@ -48,6 +48,11 @@ ShaderReader with_texts(ShaderTexts texts) {
     };
 }
 
+ShaderTexts as_on_hardware() {
+    const std::string file = "volume/ray_cast_body.glsl";
+    return {{file, "#define HARDWARE\n" + std::string(embedded_shader(file).value())}};
+}
+
 ShaderTexts slab_counting() {
     constexpr std::array<std::string_view, 2> functions{"take_slab", "finish"};
     return {{"volume/function_composite.glsl",

@@ -34,6 +34,8 @@ using ShaderTexts = std::map<std::string, std::string, std::less<>>;
                                   std::string_view text);
 /// Composition that shows how many slabs were taken (red) and how many of those changed the picture (green).
 [[nodiscard]] ShaderTexts slab_counting();
+/// The ray caster as it is compiled for hardware, whose branches leave out what no pixel of a group needs.
+[[nodiscard]] ShaderTexts as_on_hardware();
 /// A number as GLSL reads it.
 [[nodiscard]] std::string glsl(double value);
 [[nodiscard]] std::string glsl(const glm::dvec3& value);

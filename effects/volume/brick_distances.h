@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+namespace viscera::volume {
+
+/// Distances are told up to this many bricks.
+inline constexpr int distance_reach = 31;
+/// Between the texels of two kinds of bricks that hold a distance, too.
+inline constexpr int kind_step = distance_reach + 1;
+
+/// Room to work in, kept between calls so that nothing is allocated.
+struct DistanceScratch {
+    std::vector<std::uint8_t> grid, row;
+};
+
+/// Chebyshev distance in bricks, cut at `distance_reach`, from each brick of one kind to the nearest of
+/// another: all bricks nearer than that are of its own kind, or outside the grid. At least 1. `kinds`: one
+/// byte a brick, x fastest; distances of other kinds than `kind` stay as they are. Throws Error(usage) when
+/// the number of kinds is not that of the grid.
+void distance_to_others(glm::ivec3 dims, std::span<const std::uint8_t> kinds, int kind,
+                        std::vector<std::uint8_t>& distance, DistanceScratch& scratch);
+
+struct AheadScratch {
+    std::vector<std::uint8_t> kinds, along, sizes;
+};
+
+/// The same with only those bricks looked at that lie ahead of a straight ray: for each brick the size of the
+/// largest cube, up to `distance_reach`, that begins at it, goes on in the ray's direction along every axis,
+/// and holds no brick of another kind. What lies behind a ray then does not make its leaps short.
+///
+/// `texels`: kind_step * kind + size, in a box of twice the bricks along each axis, x fastest. Its half along
+/// an axis is the lower one for rays that go down along it, the upper one for those that go up. `kinds`: one
+/// byte a brick, x fastest, less than 8. Throws Error(usage) when their number is not that of the grid.
+void sizes_ahead(glm::ivec3 dims, std::span<const std::uint8_t> kinds, std::vector<std::uint8_t>& texels,
+                 AheadScratch& scratch);
+
+}  // namespace viscera::volume
