@@ -70,6 +70,42 @@ TEST_F(ComputePath, CylindersAndSpheres) {
     }
 }
 
+/// The volume is its own labels and overlay, too.
+TEST_F(ComputePath, SegmentsAndOverlaysAsTexturesAndSlices) {
+    nlohmann::json p = parameters();
+    const nlohmann::json own{{{"value", 0}, {"opacity", 0.0}}, {{"value", 200}, {"opacity", 0.05}}};
+    p["labels"] = {
+        {"host", "host"},
+        {"segments",
+         {{{"id", 150}, {"opacity_factor", 3}}, {{"id", 199}, {"colour", {0, 1, 0}}, {"points", own}}}}};
+    p["overlay"] = {{"host", "host"}, {"strength", 0.5}};
+    p["sampling"] = {{"scheme", "preintegrated"}};
+    for (const char* storage : {"texture_3d", "atlas"}) {
+        SCOPED_TRACE(storage);
+        p["volume"]["storage"] = storage;
+        expect_same(mixed_scene(nlohmann::json::array(), p, camera_at({250, -380, 120})));
+    }
+}
+
+TEST_F(ComputePath, Colours) {
+    Volume colours = shell_volume(16, 12.0);
+    std::vector<std::byte> rgb;
+    for (const std::byte value : colours.voxels) {
+        const auto n = std::to_integer<unsigned>(value);
+        rgb.insert(rgb.end(), {value, static_cast<std::byte>(n / 2), static_cast<std::byte>(200 - n / 3)});
+    }
+    colours.voxels = std::move(rgb);
+    colours.channels = 3;
+    volume_.replace(std::move(colours));
+    const nlohmann::json p{
+        {"function", "accumulate"},
+        {"accumulate",
+         {{"channels", {{{"threshold", {0.1, 1}}}, nlohmann::json::object(), nlohmann::json::object()}}}},
+        {"shading", {{"enabled", true}}},
+        {"sampling", {{"filter", "catmull_rom"}}}};
+    expect_same(mixed_scene(nlohmann::json::array(), p, camera_at({250, -380, 120})));
+}
+
 TEST_F(ComputePath, EveryFormatOfTheTarget) {
     for (const char* format : {"rgba32f", "rgba16f", "rgba8"}) {
         SCOPED_TRACE(format);
