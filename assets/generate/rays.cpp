@@ -4,11 +4,11 @@
 #include <cmath>
 
 namespace viscera::assets {
+namespace {
 
-Chord Ellipsoid::chord(const Ray& ray) const {
-    const glm::dmat3 to_local = glm::transpose(axes);
-    const glm::dvec3 o = to_local * (ray.origin - centre) / half_lengths;
-    const glm::dvec3 d = to_local * ray.direction / half_lengths;
+/// Of a ray in two dimensions or three.
+template <class Vec>
+Chord through_unit_ball(const Vec& o, const Vec& d) {
     const double dd = glm::dot(d, d);
     const double middle = -glm::dot(o, d) / dd;
     const double square = middle * middle - (glm::dot(o, o) - 1.0) / dd;
@@ -19,21 +19,27 @@ Chord Ellipsoid::chord(const Ray& ray) const {
     return {middle - half, middle + half};
 }
 
+}  // namespace
+
+Chord Ellipsoid::chord(const Ray& ray) const {
+    const glm::dmat3 to_local = glm::transpose(axes);
+    const glm::dvec3 o = to_local * (ray.origin - centre) / half_lengths;
+    const glm::dvec3 d = to_local * ray.direction / half_lengths;
+    return through_unit_ball(o, d);
+}
+
 Chord Drum::chord(const Ray& ray) const {
     const glm::dvec2 o((ray.origin.x - centre.x) / half_width_x, (ray.origin.y - centre.y) / half_width_y);
     const glm::dvec2 d(ray.direction.x / half_width_x, ray.direction.y / half_width_y);
-    const double dd = glm::dot(d, d);
-    const double middle = -glm::dot(o, d) / dd;
-    const double square = middle * middle - (glm::dot(o, o) - 1.0) / dd;
-    if (square <= 0.0) {
+    const Chord round = through_unit_ball(o, d);
+    if (round.length() <= 0.0) {
         return {};
     }
-    const double half = std::sqrt(square);
     const double to_middle = centre.z - ray.origin.z;
     // Level rays make both ends infinite, with the right signs as long as they do not lie in a cap.
     const double a = (to_middle - half_height) / ray.direction.z;
     const double b = (to_middle + half_height) / ray.direction.z;
-    return {std::max(middle - half, std::min(a, b)), std::min(middle + half, std::max(a, b))};
+    return {std::max(round.enter, std::min(a, b)), std::min(round.leave, std::max(a, b))};
 }
 
 double length_outside(const Chord& body, std::span<const Chord> others) {

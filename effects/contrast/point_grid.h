@@ -30,8 +30,8 @@ class PointGrid {
     template <class Visit>
     void for_each_near(const glm::dvec3& place, double radius_mm, Visit&& visit) const {
         const Cell centre = cell_of(place);
-        for (double x = -1.0; x <= 1.0; x += 1.0) {
-            for (double y = -1.0; y <= 1.0; y += 1.0) {
+        for (const double x : {-1.0, 0.0, 1.0}) {
+            for (const double y : {-1.0, 0.0, 1.0}) {
                 // Cells that differ in z only stand together.
                 const Cell low{centre[0] + x, centre[1] + y, centre[2] - 1.0};
                 const Cell high{centre[0] + x, centre[1] + y, centre[2] + 1.0};

@@ -2,7 +2,6 @@
 
 #include "engine/core/hash.h"
 #include "engine/gl/mesh.h"
-#include "engine/io/mesh.h"
 #include "engine/runtime/pass.h"
 #include "engine/runtime/region.h"
 
@@ -10,17 +9,6 @@ namespace viscera::contrast {
 
 SilhouetteEffect::SilhouetteEffect()
     : programs_{{"contrast/geometry.vert", "contrast/silhouette.frag", {}}} {}
-
-void SilhouetteEffect::visit(ParamVisitor& v) {
-    v.field({.name = "mesh", .doc = "Surface: glTF, GLB, STL, OBJ, PLY or VTP.", .required = true}, mesh_);
-    v.field({.name = "mesh_filter", .doc = "Only meshes whose name contains this; empty: all."}, filter_);
-    v.field({.name = "mm_per_unit",
-             .doc = "Length of the file's unit; by default 1000 for glTF, 1 for the others.",
-             .unit = "mm",
-             .min = 0.0,
-             .min_excluded = true},
-            mm_per_unit_);
-}
 
 std::vector<Port> SilhouetteEffect::ports() const {
     return {{.name = "mask",
@@ -32,10 +20,8 @@ std::vector<Port> SilhouetteEffect::ports() const {
 Work SilhouetteEffect::prepare(Prepare& prepare) {
     if (!data_ || parameters_key_ != prepare.parameters_key()) {
         parameters_key_ = prepare.parameters_key();
-        data_ = prepare.assets().shared<MeshData>(parameters_key_, [&] {
-            return std::make_shared<MeshData>(io::merge(io::load_meshes(
-                mesh_.path, {.scale_mm_per_unit = mm_per_unit_, .name_filter = filter_}, prepare.log())));
-        });
+        data_ = prepare.assets().shared<MeshData>(
+            parameters_key_, [&] { return std::make_shared<MeshData>(mesh_.load_merged(prepare.log())); });
     }
     const glm::dmat4 view_projection = prepare.frame().eye().view_projection();
     const glm::ivec2 size = prepare.size("mask");

@@ -9,16 +9,14 @@ namespace viscera::contrast {
 class SilhouetteEffect final : public Effect {
   public:
     SilhouetteEffect();
-    void visit(ParamVisitor& visitor) override;
+    void visit(ParamVisitor& visitor) override { mesh_.visit(visitor); }
     [[nodiscard]] std::vector<Port> ports() const override;
     [[nodiscard]] std::span<const ProgramDesc> programs() const override { return programs_; }
     [[nodiscard]] Work prepare(Prepare& prepare) override;
     void draw(const Pass& pass) override;
 
   private:
-    AssetPath mesh_;
-    std::string filter_;
-    std::optional<double> mm_per_unit_;
+    MeshFile mesh_;
     std::vector<ProgramDesc> programs_;
     std::shared_ptr<const MeshData> data_;
     std::uint64_t parameters_key_ = 0;

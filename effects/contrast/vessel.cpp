@@ -74,13 +74,11 @@ void find_arrival_range(Vessel& vessel, const VesselParams& params) {
 
 std::shared_ptr<Vessel> make_vessel(const VesselParams& params, Log& log) {
     auto vessel = std::make_shared<Vessel>();
-    const std::vector<MeshData> meshes = io::load_meshes(
-        params.mesh.path, {.scale_mm_per_unit = params.mm_per_unit, .name_filter = params.mesh_filter}, log);
-    vessel->mesh = io::merge(meshes);
+    vessel->mesh = params.mesh.load_merged(log);
     vessel->bounds = vessel->mesh.bounds();
     if (vessel->mesh.indices.empty()) {
         log.fault("contrast.no_triangles",
-                  params.mesh.path.string() + ": this vessel has no triangles; nothing is drawn of it");
+                  params.mesh.file.path.string() + ": this vessel has no triangles; nothing is drawn of it");
     }
     if (params.density == DensitySource::arrival_time) {
         find_arrival(*vessel, params, log);
@@ -99,16 +97,7 @@ std::span<const std::string_view> choice_names(DensitySource) {
 }
 
 void VesselParams::visit(ParamVisitor& v) {
-    v.field(
-        {.name = "mesh", .doc = "Surface of the vessels: glTF, GLB, STL, OBJ, PLY or VTP.", .required = true},
-        mesh);
-    v.field({.name = "mesh_filter", .doc = "Only meshes whose name contains this; empty: all."}, mesh_filter);
-    v.field({.name = "mm_per_unit",
-             .doc = "Length of the file's unit; by default 1000 for glTF, 1 for the others.",
-             .unit = "mm",
-             .min = 0.0,
-             .min_excluded = true},
-            mm_per_unit);
+    mesh.visit(v);
     v.field(
         {.name = "density",
          .doc =

@@ -10,6 +10,7 @@
 #include "engine/core/mesh_data.h"
 #include "engine/runtime/assets.h"
 #include "engine/runtime/frame.h"
+#include "engine/runtime/mesh_file.h"
 
 namespace viscera::contrast {
 
@@ -19,9 +20,7 @@ enum class DensitySource { arrival_time, per_vertex };
 
 /// A vessel surface and how contrast gets into it.
 struct VesselParams {
-    AssetPath mesh;
-    std::string mesh_filter;
-    std::optional<double> mm_per_unit;
+    MeshFile mesh;
     DensitySource density = DensitySource::arrival_time;
     std::string scalar = "DENSITY";
     AssetPath centreline;

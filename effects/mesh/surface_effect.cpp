@@ -4,7 +4,6 @@
 #include "engine/core/hash.h"
 #include "engine/core/log.h"
 #include "engine/gl/mesh.h"
-#include "engine/io/mesh.h"
 #include "engine/runtime/pass.h"
 #include "engine/runtime/region.h"
 
@@ -21,14 +20,7 @@ void LightParams::visit(ParamVisitor& v) {
 }
 
 void SurfaceParams::visit(ParamVisitor& v) {
-    v.field({.name = "mesh", .doc = "Surface: glTF, GLB, STL, OBJ, PLY or VTP.", .required = true}, mesh);
-    v.field({.name = "mesh_filter", .doc = "Only meshes whose name contains this; empty: all."}, mesh_filter);
-    v.field({.name = "mm_per_unit",
-             .doc = "Length of the file's unit; by default 1000 for glTF, 1 for the others.",
-             .unit = "mm",
-             .min = 0.0,
-             .min_excluded = true},
-            mm_per_unit);
+    mesh.visit(v);
     v.field({.name = "placement", .doc = "Where the mesh is put; its centre is its box's."}, placement);
     v.field({.name = "colour", .doc = "Red, green and blue, linear.", .min = 0.0, .max = 1.0}, colour);
     v.field({.name = "two_sided", .doc = "Back faces are drawn, lit as if they were front faces."},
@@ -81,17 +73,9 @@ std::span<const ProgramDesc> SurfaceEffect::programs() const {
 Work SurfaceEffect::prepare(Prepare& prepare) {
     if (!data_ || parameters_key_ != prepare.parameters_key()) {
         parameters_key_ = prepare.parameters_key();
-        mesh_key_ = Hash()
-                        .add(params_.mesh.path.string())
-                        .add(params_.mesh_filter)
-                        .add(params_.mm_per_unit.value_or(0.0))
-                        .value();
-        data_ = prepare.assets().shared<MeshData>(mesh_key_, [&] {
-            return std::make_shared<MeshData>(io::merge(io::load_meshes(
-                params_.mesh.path,
-                {.scale_mm_per_unit = params_.mm_per_unit, .name_filter = params_.mesh_filter},
-                prepare.log())));
-        });
+        mesh_key_ = params_.mesh.key();
+        data_ = prepare.assets().shared<MeshData>(
+            mesh_key_, [&] { return std::make_shared<MeshData>(params_.mesh.load_merged(prepare.log())); });
         bounds_ = data_->bounds();
         to_world_ = placement_matrix(params_.placement, 0.5 * glm::dvec3(bounds_.min + bounds_.max));
         light_directions_.resize(params_.lights.size());

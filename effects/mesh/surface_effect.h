@@ -8,6 +8,7 @@
 #include "engine/core/mesh_data.h"
 #include "engine/core/placement.h"
 #include "engine/runtime/effect.h"
+#include "engine/runtime/mesh_file.h"
 
 namespace viscera::mesh {
 
@@ -20,9 +21,7 @@ struct LightParams {
 };
 
 struct SurfaceParams {
-    AssetPath mesh;
-    std::string mesh_filter;
-    std::optional<double> mm_per_unit;
+    MeshFile mesh;
     PlacementParams placement;
     glm::dvec3 colour{0.8};
     bool two_sided = true;

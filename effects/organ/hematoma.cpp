@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/core/hash.h"
+#include "engine/core/pixel_index.h"
 #include "engine/runtime/pass.h"
 #include "engine/runtime/region.h"
 
@@ -97,7 +98,7 @@ void Hematoma::sort_into_cells(std::span<const glm::vec4> shader_spots) {
     const auto for_each_cell = [&](const Range& range, auto&& action) {
         for (int y = range.first.y; y <= range.last.y; ++y) {
             for (int x = range.first.x; x <= range.last.x; ++x) {
-                action(static_cast<std::size_t>(y * cells_.x + x));
+                action(pixel_index(x, y, cells_.x));
             }
         }
     };

@@ -8,6 +8,7 @@
 #include "engine/core/error.h"
 #include "engine/core/hash.h"
 #include "engine/core/log.h"
+#include "engine/core/pixel_index.h"
 #include "engine/gl/texture.h"
 #include "engine/runtime/pass.h"
 
@@ -223,7 +224,8 @@ Work CoagulateEffect::prepare(Prepare& prepare) {
             list_.emplace_back(n, n + 1.0F, n + 2.0F, n + 3.0F);
         }
         drawn_tiles_.clear();
-        const auto side = static_cast<float>((size + TileTree::tile_texels - 1) / TileTree::tile_texels);
+        const int tiles = (size + TileTree::tile_texels - 1) / TileTree::tile_texels;
+        const auto side = static_cast<float>(tiles);
         const auto count = static_cast<float>(contacts_.contacts().size());
         for (float y = 0.0F; y < side; y += 1.0F) {
             for (float x = 0.0F; x < side; x += 1.0F) {
@@ -251,7 +253,7 @@ Work CoagulateEffect::prepare(Prepare& prepare) {
 /// Pairs of a tile and a contact that may reach it, by contact, and the rectangles around the tiles.
 void CoagulateEffect::find_region(TileTree& tiles, PixelRegion& region) {
     const int side = tiles.tiles_per_side();
-    next_.assign(static_cast<std::size_t>(side * side), 0);
+    next_.assign(static_cast<std::size_t>(side) * static_cast<std::size_t>(side), 0);
     pair_tiles_.clear();
     pair_contacts_.clear();
     const glm::dvec3 limit(limit_);
@@ -275,7 +277,7 @@ void CoagulateEffect::find_region(TileTree& tiles, PixelRegion& region) {
     for (int y = 0; y < side; ++y) {
         for (int x = 0; x < side; ++x) {
             const int begin = x;
-            while (x < side && next_[static_cast<std::size_t>(y * side + x)] > 0) {
+            while (x < side && next_[pixel_index(x, y, side)] > 0) {
                 ++x;
             }
             region.add({begin * t, y * t, (x - begin) * t, t});
@@ -297,7 +299,7 @@ void CoagulateEffect::list_tiles(int side, const PixelRegion& region) {
     for (const PixelRect& rect : region.rects()) {
         for (int y = rect.y / t; y * t < rect.y + rect.height; ++y) {
             for (int x = rect.x / t; x * t < rect.x + rect.width; ++x) {
-                const auto tile = static_cast<std::size_t>(y * side + x);
+                const auto tile = pixel_index(x, y, side);
                 const std::uint32_t first = next_[tile];
                 const std::uint32_t end = tile + 1 < next_.size() ? next_[tile + 1] : begin;
                 drawn_tiles_.emplace_back(x, y, first, end - first);

@@ -185,7 +185,8 @@ void ContactList::split(const Settings& settings) {
     const double seconds = settings.end_s - settings.begin_s;
     // A length that is a whole number of steps but for rounding has no further one.
     double steps = std::ceil(std::min(seconds, longest_in_steps_s) * steps_per_second - 1e-6);
-    steps = std::min(steps, std::floor(static_cast<double>(most_contacts / contacts_.size())));
+    const std::size_t most_steps = most_contacts / contacts_.size();
+    steps = std::min(steps, static_cast<double>(most_steps));
     if (!(steps > 1.0)) {
         return;
     }

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "engine/core/error.h"
+#include "engine/core/pixel_index.h"
 #include "engine/runtime/renderer.h"
 
 namespace viscera::tissue {
@@ -71,7 +72,7 @@ void EnergyQueries::take_surface(const Image& position, const Image& metric) {
             places_[index(x, y)] = place;
             areas_[index(x, y)] = place.w == 1.0F ? metric.at(x, y, 3) : 0.0F;
             if (place.w == 1.0F) {
-                Box& box = boxes_[static_cast<std::size_t>(y / tile_texels * tiles_x_ + x / tile_texels)];
+                Box& box = boxes_[pixel_index(x / tile_texels, y / tile_texels, tiles_x_)];
                 box.low = glm::min(box.low, glm::vec3(place));
                 box.high = glm::max(box.high, glm::vec3(place));
             }

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace viscera::tissue {
 namespace {
 
 constexpr std::size_t leaf_size = 4;
 constexpr std::size_t deepest = 64;
+constexpr double unbounded = std::numeric_limits<double>::infinity();
 
 /// Weights of the second and third corner at the point of a triangle that is nearest to p (C. Ericson,
 /// Real-Time Collision Detection, 5.1.5).
@@ -57,8 +59,8 @@ std::optional<double> entry(const glm::dvec3& from, const glm::dvec3& inverse, d
         double a = (low[axis] - from[axis]) * inverse[axis];
         double b = (high[axis] - from[axis]) * inverse[axis];
         // A way within the plane of a face gives 0 times infinity; such a face does not bound it.
-        a = std::isnan(a) ? -INFINITY : a;
-        b = std::isnan(b) ? INFINITY : b;
+        a = std::isnan(a) ? -unbounded : a;
+        b = std::isnan(b) ? unbounded : b;
         near = std::max(near, std::min(a, b));
         far = std::min(far, std::max(a, b));
     }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/core/pixel_index.h"
+
 namespace viscera::tissue {
 namespace {
 
@@ -35,7 +37,8 @@ TileTree::TileTree(int size) : size_(size), side_(tiles_for(size)) {
     make_levels();
     const float step = 1.0F / static_cast<float>(size);
     for (int t = 0; t < side_ * side_; ++t) {
-        const glm::vec2 tile(static_cast<float>(t % side_), static_cast<float>(t / side_));
+        const int row = t / side_;
+        const glm::vec2 tile(static_cast<float>(t % side_), static_cast<float>(row));
         const glm::vec2 low = tile * (step * static_cast<float>(tile_texels));
         const glm::vec2 high = (tile + 1.0F) * (step * static_cast<float>(tile_texels));
         levels_[0].boxes[static_cast<std::size_t>(t)] = {{low, 0.0F}, {high, 0.0F}};
@@ -43,7 +46,8 @@ TileTree::TileTree(int size) : size_(size), side_(tiles_for(size)) {
     merge_levels();
 }
 
-TileTree::TileTree(std::shared_ptr<const TexelMap> map) : size_(map->size), side_(tiles_for(map->size)) {
+TileTree::TileTree(const std::shared_ptr<const TexelMap>& map)
+    : size_(map->size), side_(tiles_for(map->size)) {
     make_levels();
     find_shares(*map);
 }
@@ -97,9 +101,10 @@ void TileTree::place(std::span<const glm::vec3> positions, std::span<const std::
         Box box;
         for (std::uint32_t s = first_share_[t]; s < first_share_[t + 1]; ++s) {
             const Share& share = shares_[s];
-            const glm::vec3& p = positions[indices[3 * share.triangle]];
-            const glm::vec3 e1 = positions[indices[3 * share.triangle + 1]] - p;
-            const glm::vec3 e2 = positions[indices[3 * share.triangle + 2]] - p;
+            const auto corner = indices.subspan(3 * std::size_t{share.triangle}, 3);
+            const glm::vec3& p = positions[corner[0]];
+            const glm::vec3 e1 = positions[corner[1]] - p;
+            const glm::vec3 e2 = positions[corner[2]] - p;
             const glm::vec3 low = p + glm::min(share.low.x * e1, share.high.x * e1) +
                                   glm::min(share.low.y * e2, share.high.y * e2);
             const glm::vec3 high = p + glm::max(share.low.x * e1, share.high.x * e1) +
@@ -126,8 +131,8 @@ void TileTree::merge_levels() {
         std::ranges::fill(level.boxes, Box{});
         for (int y = 0; y < below.side; ++y) {
             for (int x = 0; x < below.side; ++x) {
-                level.boxes[static_cast<std::size_t>(y / 2 * level.side + x / 2)].add(
-                    below.boxes[static_cast<std::size_t>(y * below.side + x)]);
+                level.boxes[pixel_index(x / 2, y / 2, level.side)].add(
+                    below.boxes[pixel_index(x, y, below.side)]);
             }
         }
     }

@@ -20,7 +20,7 @@ class TileTree {
     /// The places are the texels' own UV: (u, v, 0).
     explicit TileTree(int size);
     /// Of a surface; place() before it is asked.
-    explicit TileTree(std::shared_ptr<const TexelMap> map);
+    explicit TileTree(const std::shared_ptr<const TexelMap>& map);
 
     /// New positions of the vertices [mm in the world] of the mesh that the map is of. Cheap enough for every
     /// frame; allocates nothing.

@@ -154,7 +154,7 @@ class Renderer::Impl {
         scene_.replan();
     }
 
-    void watch(std::vector<std::string> targets, WatchPath path) {
+    void watch(const std::vector<std::string>& targets, WatchPath path) {
         watch_.set_path(watch_path(path));
         watch_.set_targets(targets);
         read_back_.watched = watch_.targets();
@@ -264,7 +264,7 @@ void Renderer::keep(std::vector<std::string> targets) {
     impl_->keep(std::move(targets));
 }
 void Renderer::watch(std::vector<std::string> targets, WatchPath path) {
-    impl_->with_host_state([&] { impl_->watch(std::move(targets), path); });
+    impl_->with_host_state([&] { impl_->watch(targets, path); });
 }
 void Renderer::wait_for_watched(std::uint64_t most_frames_behind) {
     impl_->with_host_state([&] { impl_->watch_.wait(most_frames_behind); });

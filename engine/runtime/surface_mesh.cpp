@@ -60,14 +60,7 @@ glm::vec3 turned(const glm::vec3& normal, const glm::vec3& from, const glm::vec3
 }  // namespace
 
 void SurfaceMeshParams::visit(ParamVisitor& v) {
-    v.field({.name = "file", .doc = "Surface: glTF, GLB, STL, OBJ, PLY or VTP.", .required = true}, file);
-    v.field({.name = "filter", .doc = "Only meshes whose name contains this; empty: all."}, filter);
-    v.field({.name = "mm_per_unit",
-             .doc = "Length of the file's unit; by default 1000 for glTF, 1 for the others.",
-             .unit = "mm",
-             .min = 0.0,
-             .min_excluded = true},
-            mm_per_unit);
+    MeshFile::visit(v, "file", "filter");
     v.field({.name = "placement", .doc = "Where the mesh is put; its centre is its box's."}, placement);
     v.field({.name = "host_positions",
              .doc = "Name of the host's array of 3 floats [mm] per vertex that moves them; empty: none."},
@@ -93,19 +86,11 @@ SurfaceMesh::SurfaceMesh(TextureSpace space)
 }
 
 std::shared_ptr<SurfaceMesh> SurfaceMesh::load(Assets& assets, const SurfaceMeshParams& params) {
-    const std::uint64_t key = Hash()
-                                  .add(std::string_view(params.file.path.native()))
-                                  .add(params.filter)
-                                  .add(params.mm_per_unit.value_or(0.0))
-                                  .add(params.host_positions)
-                                  .add(params.atlas)
-                                  .value();
+    const std::uint64_t key =
+        Hash().add(params.MeshFile::key()).add(params.host_positions).add(params.atlas).value();
     return assets.shared<SurfaceMesh>(key, [&] {
-        const std::vector<MeshData> parts = io::load_meshes(
-            params.file.path, {.scale_mm_per_unit = params.mm_per_unit, .name_filter = params.filter},
-            assets.log());
         return std::make_shared<SurfaceMesh>(
-            make_texture_space(parts, params.atlas, params.file.path.string(), assets));
+            make_texture_space(params.load(assets.log()), params.atlas, params.file.path.string(), assets));
     });
 }
 

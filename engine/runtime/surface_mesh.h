@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -12,6 +11,7 @@
 #include "engine/core/placement.h"
 #include "engine/gl/mesh.h"
 #include "engine/runtime/frame.h"
+#include "engine/runtime/mesh_file.h"
 #include "engine/runtime/texture_space.h"
 
 namespace viscera {
@@ -20,10 +20,7 @@ class Assets;
 class Log;
 
 /// A mesh that passes paint on: which one, where it is put, and who moves it.
-struct SurfaceMeshParams {
-    AssetPath file;
-    std::string filter;
-    std::optional<double> mm_per_unit;
+struct SurfaceMeshParams : MeshFile {
     PlacementParams placement;
     std::string host_positions;
     AtlasSource atlas = AtlasSource::automatic;

@@ -6,7 +6,7 @@
 #include <thread>
 
 #include "engine/gl/functions.h"
-#include "tests/context/error_of.h"
+#include "tests/core/error_of.h"
 #include "tests/context/offscreen.h"
 
 namespace viscera {

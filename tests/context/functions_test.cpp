@@ -7,7 +7,7 @@
 
 #include "engine/gl/capabilities.h"
 #include "engine/gl/debug.h"
-#include "tests/context/error_of.h"
+#include "tests/core/error_of.h"
 
 namespace viscera {
 namespace {

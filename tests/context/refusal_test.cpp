@@ -11,7 +11,7 @@
 #include "engine/context/shared_library.h"
 #include "engine/context/window.h"
 #include "tests/context/environment.h"
-#include "tests/context/error_of.h"
+#include "tests/core/error_of.h"
 #include "tests/context/offscreen.h"
 
 namespace viscera {

@@ -8,7 +8,7 @@
 
 #include "engine/context/shared_library.h"
 #include "tests/context/environment.h"
-#include "tests/context/error_of.h"
+#include "tests/core/error_of.h"
 #include "tests/context/offscreen.h"
 #include "tests/context/xvfb.h"
 

@@ -10,6 +10,7 @@
 #include "engine/gl/framebuffer.h"
 #include "engine/gl/host_state.h"
 #include "engine/gl/texture.h"
+#include "tests/core/error_of.h"
 #include "tests/embed/host_context.h"
 #include "tests/embed/world.h"
 #include "tests/gl/poison_objects.h"
@@ -66,17 +67,6 @@ class EmbedTest : public testing::TestWithParam<HostContext::Kind> {
     std::optional<ScopedPoison> poison_;
     std::optional<gl::HostState> before_poison_;
 };
-
-/// The error that a call throws.
-template <class Call>
-std::optional<Error> error_of(Call&& call) {
-    try {
-        call();
-    } catch (const Error& error) {
-        return error;
-    }
-    return std::nullopt;
-}
 
 /// A framebuffer of the host's own, filled with one colour.
 struct HostCanvas {

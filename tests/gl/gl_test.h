@@ -11,6 +11,7 @@
 #include "engine/core/error.h"
 #include "engine/gl/debug.h"
 #include "engine/gl/handle.h"
+#include "tests/core/error_of.h"
 
 namespace viscera::test {
 
@@ -37,17 +38,6 @@ class GlTest : public testing::TestWithParam<Backend> {
     std::unique_ptr<const gl::Functions> functions_;
     std::optional<gl::DebugMessages> messages_;
 };
-
-/// The error that `action` throws.
-template <class Action>
-std::optional<Error> error_of(const Action& action) {
-    try {
-        action();
-    } catch (const Error& error) {
-        return error;
-    }
-    return std::nullopt;
-}
 
 [[nodiscard]] std::string backend_name(const testing::TestParamInfo<Backend>& info);
 

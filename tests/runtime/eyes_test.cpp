@@ -44,6 +44,14 @@ class TwoEyes : public RuntimeTest {
         add_shared("sum", {.ports = {read_port("in", "x"), write_port("out", "y", 7.0F)},
                            .prepare = prepare_cached,
                            .draw = draw_add("in")});
+        add("half_idle", {.ports = {write_port("out", "x", 4.0F)},
+                          .prepare =
+                              [](Prepare& prepare, double) {
+                                  return prepare.frame().eye().eye_mm.x < 0.0
+                                             ? Work::idle("nothing to the left")
+                                             : Work::all(1);
+                              },
+                          .draw = draw_view});
     }
     void add_shared(const std::string& name, Recipe recipe) {
         add_effect(name, [recipe] { return std::make_unique<SharedRecipe>(recipe); });
@@ -116,13 +124,6 @@ TEST_P(TwoEyes, AChangedParameterReachesBoth) {
 }
 
 TEST_P(TwoEyes, AnIdleEyeLeavesItsOwnTargetEmpty) {
-    add("half_idle", {.ports = {write_port("out", "x", 4.0F)},
-                      .prepare =
-                          [](Prepare& prepare, double) {
-                              return prepare.frame().eye().eye_mm.x < 0.0 ? Work::idle("nothing to the left")
-                                                                          : Work::all(1);
-                          },
-                      .draw = draw_view});
     renderer().set_scene(make_scene({{"half_idle", 0.0}}, {"x"}));
     const FrameReport& report = renderer().render(frame_of(-1.0, 2.0));
     EXPECT_EQ(status(report, 0), PassStatus::idle);
@@ -169,13 +170,6 @@ TEST_P(TwoEyes, SideBySideIsOnePictureOfTwiceTheWidth) {
 }
 
 TEST_P(TwoEyes, SideBySideShowsTheClearValueOfAnEmptyEye) {
-    add("half_idle", {.ports = {write_port("out", "x", 4.0F)},
-                      .prepare =
-                          [](Prepare& prepare, double) {
-                              return prepare.frame().eye().eye_mm.x < 0.0 ? Work::idle("nothing to the left")
-                                                                          : Work::all(1);
-                          },
-                      .draw = draw_view});
     Scene scene = make_scene({{"half_idle", 0.0}}, {"x"});
     scene.camera.stereo = StereoParams{.layout = StereoLayout::side_by_side};
     renderer().set_scene(std::move(scene));

@@ -12,6 +12,7 @@
 
 #include "engine/core/error.h"
 #include "engine/io/png.h"
+#include "tests/core/error_of.h"
 #include "tests/io/temp_folder.h"
 
 namespace viscera::test {
@@ -43,16 +44,6 @@ std::vector<std::string> files_in(const std::filesystem::path& folder) {
         names.push_back(entry.path().filename().string());
     }
     return names;
-}
-
-template <class Call>
-std::optional<Error> error_of(const Call& call) {
-    try {
-        call();
-    } catch (const Error& error) {
-        return error;
-    }
-    return std::nullopt;
 }
 
 /// Files of this process may not grow beyond a few bytes while it lives: what a full disk looks like.

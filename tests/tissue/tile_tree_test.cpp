@@ -35,7 +35,7 @@ TEST(TileTree, EveryTexelInReachLiesInATileThatIsFound) {
         Log log;
         Assets assets(log);
         tissue::TexelMap map;
-        const auto mesh = SurfaceMesh::load(assets, {.file = {plane.write("tiles")}});
+        const auto mesh = SurfaceMesh::load(assets, {{.file = {plane.write("tiles")}}});
         constexpr int size = 100;  // the last tiles are cut off
         const auto texels = tissue::shared_texel_map(assets, *mesh, size, "tiles");
         // Bent, so that boxes are not flat.
