@@ -63,6 +63,11 @@ TEST_F(VolumeLooks, ColoursAtTheirEnds) {
                                             {"brightness", brightness},
                                             {"channels", list}};
                 (void)cast(live, parameters);
+                parameters["shading"] = {{"enabled", true},
+                                         {"lights", {{{"direction", {0, 0, 1}}}}},
+                                         {"light_volume", {{"shadow", 1}, {"ambient_occlusion", 1}}}};
+                parameters["sampling"]["filter"] = "bspline";
+                (void)cast(live, parameters);
                 parameters["accumulate"]["channels"][1]["threshold"] = {1.0, 0.0};
                 EXPECT_TRUE(is_empty(cast(live, parameters)));
             }
