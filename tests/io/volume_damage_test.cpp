@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cstdlib>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -127,6 +128,44 @@ INSTANTIATE_TEST_SUITE_P(Files, VolumeDamage, testing::Range(std::size_t{0}, sam
                              std::ranges::replace(name, '.', '_');
                              return name;
                          });
+
+/// Damage behind a stream that is sound: what is unpacked is walked as closely as what is not packed.
+/// VISCERA_FUZZ_ROUNDS: how many inputs (default 300).
+TEST(VolumeDamageOfDeflatedDicom, ElementsAreWalkedUnpacked) {
+    const std::string whole = test::dicom({.coding = test::DicomCoding::deflated});
+    const std::string plain = test::dicom({});
+    const std::string first_element("\x08\0\x16\0", 4);
+    const std::string elements = plain.substr(plain.find(first_element));
+    const std::size_t packed = whole.size() - test::deflated(elements, -15).size();
+    const char* wanted = std::getenv("VISCERA_FUZZ_ROUNDS");
+    const int rounds = wanted == nullptr ? 300 : std::atoi(wanted);
+    std::mt19937 random(20240608U);
+    std::uniform_int_distribution<std::size_t> place(0, elements.size() - 1);
+    std::uniform_int_distribution<int> value(0, 255);
+    const test::TempFolder folder;
+    int refused = 0;
+    for (int round = 0; round < rounds; ++round) {
+        std::string damaged = elements;
+        for (int flips = 0; flips < round % 4; ++flips) {
+            damaged[place(random)] = static_cast<char>(value(random));
+        }
+        if (round % 5 == 4) {
+            damaged.resize(place(random));
+        }
+        const std::filesystem::path file =
+            folder.write("a.dcm", whole.substr(0, packed) + test::deflated(damaged, -15));
+        Log log;
+        try {
+            const Volume volume = load_volume(file, {}, log);
+            EXPECT_NO_THROW(volume.validate());
+        } catch (const Error& error) {
+            EXPECT_EQ(error.where(), file.string());
+            ++refused;
+        }
+    }
+    EXPECT_GT(refused, rounds / 5);
+    EXPECT_LT(refused, rounds);
+}
 
 struct Lie {
     const char* name;
