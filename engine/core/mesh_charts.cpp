@@ -253,11 +253,13 @@ class Cutter {
             }
         }
         std::vector<std::pair<double, std::uint32_t>> order;
+        order.reserve(shared.size());
         for (const auto& [other, length] : shared) {
             order.emplace_back(-length, other);
         }
         std::ranges::sort(order);
         std::vector<std::uint32_t> result;
+        result.reserve(order.size());
         for (const auto& [length, other] : order) {
             result.push_back(other);
         }

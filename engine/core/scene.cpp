@@ -56,7 +56,10 @@ constexpr const char* target_name_rule =
         // A key may hold line breaks; a fault is one line.
         std::ranges::replace_if(
             line, [](char c) { return static_cast<unsigned char>(c) < ' '; }, '?');
-        text += (i == 0 ? "" : "\n" + where + ": ") + line;
+        if (i > 0) {
+            text.append("\n").append(where).append(": ");
+        }
+        text += line;
     }
     if (faults.size() > most_faults_shown) {
         text += "\n" + where + ": and " + std::to_string(faults.size() - most_faults_shown) + " faults more";

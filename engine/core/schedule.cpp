@@ -231,11 +231,12 @@ void Schedule::find_wanted(const Plan& plan) {
     }
     for (std::size_t p = plan.passes.size(); p-- > 0;) {
         const auto& bindings = plan.passes[p].bindings;
-        wanted_[p] = plan.passes[p].live && !works_[p].idle &&
-                     std::ranges::any_of(bindings, [&](const PlanBinding& binding) {
-                         return binding.content && makes_content(binding.access) &&
-                                wanted_contents_[*binding.content] != 0;
-                     });
+        const bool wanted = plan.passes[p].live && !works_[p].idle &&
+                            std::ranges::any_of(bindings, [&](const PlanBinding& binding) {
+                                return binding.content && makes_content(binding.access) &&
+                                       wanted_contents_[*binding.content] != 0;
+                            });
+        wanted_[p] = wanted ? 1 : 0;
         if (wanted_[p] == 0) {
             continue;
         }

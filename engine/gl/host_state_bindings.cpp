@@ -71,9 +71,10 @@ void save_uniform_blocks(const Functions& gl, Values out) {
     for (GLuint i = 0; i < uniform_blocks; ++i) {
         GLint name = 0;
         gl.GetIntegeri_v(GL_UNIFORM_BUFFER_BINDING, i, &name);
-        out[3 * i] = name;
-        gl.GetInteger64i_v(GL_UNIFORM_BUFFER_START, i, &out[3 * i + 1]);
-        gl.GetInteger64i_v(GL_UNIFORM_BUFFER_SIZE, i, &out[3 * i + 2]);
+        const Values saved = part(out, i, 3);
+        saved[0] = name;
+        gl.GetInteger64i_v(GL_UNIFORM_BUFFER_START, i, &saved[1]);
+        gl.GetInteger64i_v(GL_UNIFORM_BUFFER_SIZE, i, &saved[2]);
     }
 }
 

@@ -22,7 +22,7 @@ void save_viewport(const Functions& gl, Values out) {
     for (GLuint i = 0; i < viewports; ++i) {
         std::array<GLfloat, 4> box{};
         gl.GetFloati_v(GL_VIEWPORT, i, box.data());
-        std::ranges::transform(box, out.begin() + 4 * i, [](GLfloat value) {
+        std::ranges::transform(box, part(out, i, 4).begin(), [](GLfloat value) {
             return static_cast<GLint64>(std::bit_cast<GLint>(value));
         });
     }
@@ -35,7 +35,7 @@ void restore_viewport(const Functions& gl, Saved in) {
         return;
     }
     for (GLuint i = 0; i < viewports; ++i) {
-        const Saved box = in.subspan(4 * std::size_t{i}, 4);
+        const Saved box = part(in, i, 4);
         gl.ViewportIndexedf(i, as_float(box[0]), as_float(box[1]), as_float(box[2]), as_float(box[3]));
     }
 }
@@ -48,8 +48,9 @@ void save_depth_range(const Functions& gl, Values out) {
         } else {
             gl.GetDoublev(GL_DEPTH_RANGE, range.data());
         }
-        out[2 * i] = std::bit_cast<GLint64>(range[0]);
-        out[2 * i + 1] = std::bit_cast<GLint64>(range[1]);
+        const Values saved = part(out, i, 2);
+        saved[0] = std::bit_cast<GLint64>(range[0]);
+        saved[1] = std::bit_cast<GLint64>(range[1]);
     }
 }
 
@@ -59,7 +60,8 @@ void restore_depth_range(const Functions& gl, Saved in) {
         return;
     }
     for (GLuint i = 0; i < viewports; ++i) {
-        gl.DepthRangeIndexed(i, as_double(in[2 * i]), as_double(in[2 * i + 1]));
+        const Saved range = part(in, i, 2);
+        gl.DepthRangeIndexed(i, as_double(range[0]), as_double(range[1]));
     }
 }
 
@@ -73,8 +75,9 @@ void save_scissor(const Functions& gl, Values out) {
     for (GLuint i = 0; i < viewports; ++i) {
         std::array<GLint, 4> box{};
         gl.GetIntegeri_v(GL_SCISSOR_BOX, i, box.data());
-        out[5 * i] = gl.IsEnabledi(GL_SCISSOR_TEST, i);
-        std::ranges::copy(box, out.begin() + 5 * i + 1);
+        const Values saved = part(out, i, 5);
+        saved[0] = gl.IsEnabledi(GL_SCISSOR_TEST, i);
+        std::ranges::copy(box, saved.begin() + 1);
     }
 }
 
@@ -85,7 +88,7 @@ void restore_scissor(const Functions& gl, Saved in) {
         return;
     }
     for (GLuint i = 0; i < viewports; ++i) {
-        const Saved row = in.subspan(5 * std::size_t{i}, 5);
+        const Saved row = part(in, i, 5);
         if (row[0] != 0) {
             gl.Enablei(GL_SCISSOR_TEST, i);
         } else {
@@ -161,7 +164,7 @@ void restore_blend(const Functions& gl, Saved in) {
         return;
     }
     for (GLuint i = 0; i < draw_buffers; ++i) {
-        const Saved row = in.subspan(blend_names.size() * i, blend_names.size());
+        const Saved row = part(in, i, blend_names.size());
         gl.BlendEquationSeparatei(i, as_enum(row[0]), as_enum(row[1]));
         gl.BlendFuncSeparatei(i, as_enum(row[2]), as_enum(row[3]), as_enum(row[4]), as_enum(row[5]));
     }
@@ -180,22 +183,24 @@ void save_colour_mask(const Functions& gl, Values out) {
     for (GLuint i = 0; i < draw_buffers; ++i) {
         std::array<GLboolean, 4> mask{};
         gl.GetBooleani_v(GL_COLOR_WRITEMASK, i, mask.data());
-        std::ranges::copy(mask, out.begin() + 4 * i);
+        std::ranges::copy(mask, part(out, i, 4).begin());
     }
 }
 
 void restore_colour_mask(const Functions& gl, Saved in) {
     for (GLuint i = 0; i < draw_buffers; ++i) {
-        const Saved mask = in.subspan(4 * std::size_t{i}, 4);
+        const Saved mask = part(in, i, 4);
         gl.ColorMaski(i, as_bool(mask[0]), as_bool(mask[1]), as_bool(mask[2]), as_bool(mask[3]));
     }
 }
 
 constexpr std::array rows{
-    HostStateRow{"viewport", 4 * viewports, true, always, save_viewport, restore_viewport, poison_viewport},
-    HostStateRow{"depth range", 2 * viewports, true, always, save_depth_range, restore_depth_range,
-                 poison_depth_range},
-    HostStateRow{"scissor", 5 * viewports, true, always, save_scissor, restore_scissor, poison_scissor},
+    HostStateRow{"viewport", 4 * std::size_t{viewports}, true, always, save_viewport, restore_viewport,
+                 poison_viewport},
+    HostStateRow{"depth range", 2 * std::size_t{viewports}, true, always, save_depth_range,
+                 restore_depth_range, poison_depth_range},
+    HostStateRow{"scissor", 5 * std::size_t{viewports}, true, always, save_scissor, restore_scissor,
+                 poison_scissor},
     HostStateRow{"blend", draw_buffers, true, always, save_blend_switch, restore_blend_switch,
                  [](const Functions& gl, const Objects&) {
                      toggle(gl, GL_BLEND, gl.IsEnabled(GL_BLEND) == GL_FALSE);
@@ -204,8 +209,8 @@ constexpr std::array rows{
                  }},
     HostStateRow{"blend functions", blend_names.size() * draw_buffers, true, always, save_blend,
                  restore_blend, poison_blend},
-    HostStateRow{"colour mask", 4 * draw_buffers, true, always, save_colour_mask, restore_colour_mask,
-                 [](const Functions& gl, const Objects&) {
+    HostStateRow{"colour mask", 4 * std::size_t{draw_buffers}, true, always, save_colour_mask,
+                 restore_colour_mask, [](const Functions& gl, const Objects&) {
                      gl.ColorMask(GL_FALSE, GL_TRUE, GL_FALSE, GL_FALSE);
                      gl.ColorMaski(1, GL_TRUE, GL_FALSE, GL_FALSE, GL_TRUE);
                  }}};

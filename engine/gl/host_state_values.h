@@ -32,6 +32,12 @@ inline GLdouble as_double(GLint64 value) {
 // Room for what drivers may write: some answer GL_POLYGON_MODE with two values.
 using Answer = std::array<GLint, 16>;
 
+/// Of values that there are `count` times per viewport, draw buffer or binding, those of one.
+template <class Span>
+Span part(Span all, GLuint index, std::size_t count) {
+    return all.subspan(count * index, count);
+}
+
 inline void read_ints(const Functions& gl, GLenum name, Values out) {
     Answer answer{};
     gl.GetIntegerv(name, answer.data());

@@ -246,9 +246,7 @@ class Walk {
         if (element.tag == frames) {
             const auto first = std::min(value.find_first_not_of(' '), value.size());
             std::from_chars(value.data() + first, value.data() + value.size(), frames_);
-        } else if (element.tag == rows) {
-            pixels_ *= word(value);
-        } else if (element.tag == columns) {
+        } else if (element.tag == rows || element.tag == columns) {
             pixels_ *= word(value);
         } else if (element.tag == samples_per_pixel) {
             samples_ = word(value);

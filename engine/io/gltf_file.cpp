@@ -3,6 +3,7 @@
 #include <array>
 #include <cstring>
 #include <stdexcept>
+#include <utility>
 
 #include "engine/core/error.h"
 #include "engine/io/file_bytes.h"
@@ -132,7 +133,7 @@ std::vector<std::string> load_buffers(Json& document, std::string binary, const 
         const auto length = buffer["byteLength"].get<std::uint64_t>();
         std::string bytes;
         if (const auto uri = buffer.find("uri"); uri == buffer.end()) {
-            bytes = i == 0 ? std::move(binary) : std::string();
+            bytes = std::exchange(binary, {});  // of the first alone
         } else if (!uri->is_string()) {
             throw std::runtime_error(pointer + "/uri: must be text");
         } else {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <glm/gtc/quaternion.hpp>
+#include <glm/gtc/type_ptr.hpp>
 
 #include "engine/core/error.h"
 #include "engine/io/gltf_file.h"
@@ -142,12 +143,7 @@ std::vector<double> read_accessor(const tinygltf::Model& model, int index) {
 glm::dmat4 local_transform(const tinygltf::Node& node) {
     glm::dmat4 matrix(1.0);
     if (node.matrix.size() == 16) {
-        for (int c = 0; c < 4; ++c) {
-            for (int r = 0; r < 4; ++r) {
-                matrix[c][r] = node.matrix[static_cast<std::size_t>(4 * c + r)];
-            }
-        }
-        return matrix;
+        return glm::make_mat4(node.matrix.data());
     }
     if (node.rotation.size() == 4) {
         const glm::dquat q(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]);

@@ -217,7 +217,7 @@ std::vector<std::filesystem::path> files_of(const std::filesystem::path& folder)
 }
 
 /// The slices of the series asked for, or of the largest.
-std::vector<Slice> choose(std::vector<Slice> slices, std::string series, const Reading& reading) {
+std::vector<Slice> choose(std::vector<Slice> slices, const std::string& series, const Reading& reading) {
     std::map<decltype(group_key(slices[0])), std::vector<Slice>> groups;
     for (Slice& slice : slices) {
         auto key = group_key(slice);

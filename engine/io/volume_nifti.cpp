@@ -62,7 +62,7 @@ NiftiHeader common_fields(const Raw& raw, bool swap) {
     header.voxel_offset = static_cast<double>(get(raw.vox_offset));
     header.slope = static_cast<double>(get(raw.scl_slope));
     header.intercept = static_cast<double>(get(raw.scl_inter));
-    header.units = static_cast<int>(get(raw.xyzt_units));
+    header.units = static_cast<unsigned char>(get(raw.xyzt_units));
     header.qform = get(raw.qform_code);
     header.sform = get(raw.sform_code);
     header.quaternion = {get(raw.quatern_b), get(raw.quatern_c), get(raw.quatern_d)};

@@ -137,7 +137,7 @@ Axes axes_of(const std::vector<double>& sizes, const ItkHeader& itk, const Readi
 
 /// Sizes from the header alone, checked against what a file can hold before a library sees them.
 std::vector<double> checked_sizes(const NrrdHeader& header, const Reading& reading) {
-    const std::vector<double> sizes = numbers_of(header.get("sizes"), "sizes", reading);
+    std::vector<double> sizes = numbers_of(header.get("sizes"), "sizes", reading);
     const double axes = whole_number(header.get("dimension"), "dimension", 2.0, 5.0, reading);
     if (axes != static_cast<double>(sizes.size())) {
         reading.fail("dimension and sizes do not agree");

@@ -205,7 +205,8 @@ std::vector<std::byte> encode(std::span<const double> numbers, const Reading& re
     for (const double number : numbers) {
         if constexpr (std::is_integral_v<T>) {
             // One beyond the largest is a power of two, which double has.
-            const double end = 2.0 * static_cast<double>(std::numeric_limits<T>::max() / 2 + 1);
+            constexpr auto half = std::numeric_limits<T>::max() / 2 + 1;
+            constexpr double end = 2.0 * static_cast<double>(half);
             if (!(number >= static_cast<double>(std::numeric_limits<T>::min()) && number < end)) {
                 reading.fail("voxels: " + std::to_string(number) +
                              " is no number of the type that they have");

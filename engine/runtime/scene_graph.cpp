@@ -80,6 +80,7 @@ SceneEffects make_effects(const Scene& scene, const Registry& registry) {
                                   "effect '" + pass.effect + "' cannot do without port '" + port + "'"});
             } else if (bound == ports.end()) {
                 std::vector<std::string> known;
+                known.reserve(ports.size());
                 for (const Port& p : ports) {
                     known.push_back(p.name);
                 }

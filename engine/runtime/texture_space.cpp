@@ -68,8 +68,8 @@ bool tile(std::span<const MeshData> parts, MeshData& merged) {
     std::size_t cell = 0;
     std::size_t vertex = 0;
     for (const MeshData& part : parts) {
-        const glm::dvec2 corner(size * static_cast<double>(cell % side),
-                                size * static_cast<double>(cell / side));
+        const std::size_t row = cell / side;
+        const glm::dvec2 corner(size * static_cast<double>(cell % side), size * static_cast<double>(row));
         for (const glm::vec2& uv : part.uvs) {
             merged.uvs[vertex++] = corner + 0.5 * atlas_gap + (size - atlas_gap) * glm::dvec2(uv);
         }
