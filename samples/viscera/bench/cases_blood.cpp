@@ -9,7 +9,7 @@ constexpr double steps_per_s = 120.0;
 
 /// Blood on a tube that fills the texture, one step of the simulation per frame, beside a plain copy of a
 /// picture of the film's size.
-nlohmann::json blood_scene(Lab& lab, const nlohmann::json& wounds, int max_drops, bool film) {
+nlohmann::json blood_scene(Lab& lab, const nlohmann::json& wounds, int max_drops, bool film, bool energy) {
     const int size = lab.options().width;
     const nlohmann::json mesh{{"file", "../meshes/tube.glb"}};
     SceneText scene(lab.empty_scene());
@@ -18,13 +18,30 @@ nlohmann::json blood_scene(Lab& lab, const nlohmann::json& wounds, int max_drops
             .pass("spill", "bench.source", {{"amount", 0.3}}, {{"out", "tissue.blood_spill"}});
     }
     scene.pass("bake", "tissue.bake", {{"mesh", mesh}, {"size", size}})
-        .pass("gravity", "tissue.gravity", {{"size", size}})
-        .pass("blood", "tissue.blood",
-              {{"mesh", mesh},
-               {"size", size},
-               {"state", "bench" + std::to_string(max_drops) + (film ? "film" : "")},
-               {"liquid", {{"steps_per_s", steps_per_s}, {"max_drops", max_drops}}},
-               {"wounds", wounds}})
+        .pass("gravity", "tissue.gravity", {{"size", size}});
+    if (energy) {
+        // A hook that moves beside the wound.
+        scene
+            .pass("energy", "tissue.coagulate",
+                  {{"mesh", mesh},
+                   {"size", size},
+                   {"contacts",
+                    {{{"from_mm", {0.0, -3.0, -35.0}},
+                      {"to_mm", {0.0, -3.0, 265.0}},
+                      {"end_s", 60.0},
+                      {"power", 0.5},
+                      {"sigma_mm", 1.0}}}}},
+                  {{"energy", "tissue.energy"}, {"last", "tissue.energy"}})
+            .output("tissue.energy");
+    }
+    scene
+        .pass(
+            "blood", "tissue.blood",
+            {{"mesh", mesh},
+             {"size", size},
+             {"state", "bench" + std::to_string(max_drops) + (film ? "film" : "") + (energy ? "energy" : "")},
+             {"liquid", {{"steps_per_s", steps_per_s}, {"max_drops", max_drops}}},
+             {"wounds", wounds}})
         .target("picture", "rgba32f")
         .target("copy", "rgba32f")
         .pass("source", "bench.source", {{"amount", 1.0}}, {{"out", "picture"}})
@@ -53,18 +70,19 @@ void run_blood(Lab& lab) {
     const int size = lab.options().width;
     const std::string at = " at " + std::to_string(size) + "^2";
     const auto measure = [&](const std::string& name, const nlohmann::json& wounds, int max_drops, int warm,
-                             bool film = false) {
-        Stage stage(lab, blood_scene(lab, wounds, max_drops, film),
+                             bool film = false, bool energy = false) {
+        Stage stage(lab, blood_scene(lab, wounds, max_drops, film, energy),
                     {.time_s = 0.0, .step_s = 1.0 / steps_per_s, .warm = warm});
         stage.run();
         lab.add({.group = "blood",
                  .name = name + at,
-                 .samples = stage.pass("blood"),
+                 .samples = energy ? stage.pass("blood") + stage.pass("energy") : stage.pass("blood"),
                  .ceiling = "copy of one rgba32f picture of that size",
                  .base = stage.pass("copy"),
                  .goal = step_goal});
     };
     measure("a step, 1 wound after 0.5 s", wounds_along(1, 30.0), 16384, 60);
+    measure("the same and 1 contact of energy", wounds_along(1, 30.0), 16384, 60, false, true);
     measure("a step, 4 wounds after 1 s", wounds_along(4, 30.0), 16384, 120);
     measure("a step, film on all of the surface", nlohmann::json::array(), 16384, 10, true);
     if (lab.hardware()) {
