@@ -53,11 +53,11 @@ void main() {
     float own = drop_radius(drop.z);
     vec2 lengths = texelFetch(u_metric, at, 0).xy;
     float radius = max(own, 1.5 * max(lengths.x, lengths.y));
-    v_height = u_drop.x * own * (own * own) / (radius * radius);
-    v_cap = vec4(world_at(centre), radius);
     vec2 extent = extent_of(at, radius);
+    vec2 middle = centre;
     int way = gl_VertexID % points - 1;
     bool drawn = way < 0;
+    // Most drops lie at no seam: these look for one and no more.
     if (!drawn) {
         vec2 towards = way < 2 ? vec2(float(1 - 2 * way), 0.0) : vec2(0.0, float(5 - 2 * way));
         float far = dot(abs(towards), extent);
@@ -73,6 +73,8 @@ void main() {
         extent = 2.0 * extent_of(clamp(ivec2(floor(centre)), ivec2(0), size - 1), radius);
     }
     if (drawn) {
+        v_height = u_drop.x * own * (own * own) / (radius * radius);
+        v_cap = vec4(world_at(middle), radius);
         gl_PointSize = 2.0 * max(extent.x, extent.y);
         gl_Position = vec4(2.0 * centre / vec2(size) - 1.0, 0.0, 1.0);
     }
