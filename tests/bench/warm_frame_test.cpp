@@ -107,6 +107,32 @@ TEST_P(WarmFrameTest, AMovedVolumeWithEverythingInItAllocatesNothing) {
     }
 }
 
+TEST_P(WarmFrameTest, MovedColoursInSegmentsAllocateNothing) {
+    Volume colours = bytes_of_noise(24, 4.0);
+    const std::vector<std::byte> grey = colours.voxels;
+    colours.voxels.insert(colours.voxels.end(), grey.begin(), grey.end());
+    colours.channels = 2;
+    const LiveVolume head(std::move(colours));
+    const LiveVolume labels(bytes_of_noise(12, 8.0));
+    const std::array<HostVolume, 2> given{HostVolume{"head", &head}, HostVolume{"labels", &labels}};
+    set_scene(R"({"version": 1, "resolution": [64, 64], "outputs": ["volume.colour"],
+        "camera": {"eye_mm": [0, -300, 60], "orbit_deg_per_s": 20},
+        "passes": [{"name": "cast", "effect": "volume.ray_cast", "parameters": {
+            "volume": {"host": "head", "storage": "atlas"}, "function": "accumulate",
+            "accumulate": {"channels": [{"threshold": [0.1, 1]}, {}]},
+            "shading": {"enabled": true, "light_volume": {"ambient_occlusion": 0.5}},
+            "labels": {"host": "labels", "segments": [{"id": 3, "opacity_factor": 0.5}]},
+            "overlay": {"host": "labels"}}}]})");
+    double time_s = 1.5;
+    for (int i = 0; i < 3; ++i) {
+        (void)allocations(time_s += 0.01, given);
+    }
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_EQ(allocations(time_s += 0.01, given), 0U) << "at " << time_s << " s";
+        EXPECT_EQ(drawn(), 1U);
+    }
+}
+
 TEST_P(WarmFrameTest, AMovedOrganBehindAMembraneAllocatesNothing) {
     const auto scenes = std::filesystem::path(VISCERA_SOURCE_DIR) / "assets" / "scenes";
     const nlohmann::json membrane = {
