@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <string>
 
 #include "effects/tissue/baked_surface.h"
@@ -263,37 +262,21 @@ void BloodEffect::update_surface(const Pass& pass) {
     }
 }
 
-double BloodEffect::drop_radius_mm(double volume_mm3) const {
-    return std::cbrt(volume_mm3 * 2.0 / (std::numbers::pi * params_.liquid.drop_aspect));
-}
-
-bool BloodEffect::is_expected(std::size_t wound, double reach_mm) const {
-    const std::vector<BloodState::Expected>& expected = state_->expected;
-    return wound < expected.size() && expected[wound].reach_mm >= reach_mm &&
-           expected[wound].uv == places_[wound].uv;
-}
-
 void BloodEffect::expect_drops() {
-    BloodState& state = *state_;
     const double dt = 1.0 / params_.liquid.steps_per_s;
-    const double from = static_cast<double>(state.step) * dt;
+    const double from = static_cast<double>(state_->step) * dt;
     const double to = from + static_cast<double>(steps_per_look) * dt;
-    expected_.clear();
-    state.expected.assign(places_.size(), {});
+    ExpectedDrops& expected = state_->expected;
+    expected.begin(params_.liquid.drop_aspect);
     for (std::size_t i = 0; i < std::min(places_.size(), wounds_.size()); ++i) {
         const WoundParams& wound = wounds_[i];
-        if (!places_[i].found || wound.kind == BleedingKind::jet || wound.start_s >= to ||
-            wound.stop_s <= from) {
-            continue;
+        if (places_[i].found && wound.kind == BleedingKind::ooze && wound.start_s < to &&
+            wound.stop_s > from) {
+            expected.add(i, places_[i].uv, wound.radius_mm,
+                         DropMeter::drop_volume(wound.rate_mm3_s * dt, params_.liquid.drop_mm3));
         }
-        const double drop = DropMeter::drop_volume(wound.rate_mm3_s * dt, params_.liquid.drop_mm3);
-        const double reach = wound.radius_mm + drop_radius_mm(drop);
-        state.expected[i] = {places_[i].uv, reach};
-        // A drop as large as the place is marked as if it were there.
-        const double volume = 0.5 * std::numbers::pi * params_.liquid.drop_aspect * reach * reach * reach;
-        expected_.emplace_back(places_[i].uv, static_cast<float>(volume), 0.0F);
     }
-    state.gpu->expect(expected_);
+    state_->gpu->expect(expected.places());
 }
 
 void BloodEffect::collect_drops(std::int64_t step) {
@@ -317,7 +300,7 @@ void BloodEffect::collect_drops(std::int64_t step) {
                 {.uv = places_[i].uv,
                  .volume_mm3 = static_cast<float>(drops.volume_mm3),
                  .radius_mm = static_cast<float>(wound.radius_mm),
-                 .expected = is_expected(i, wound.radius_mm + drop_radius_mm(drops.volume_mm3))});
+                 .expected = state_->expected.covers(i, places_[i].uv, wound.radius_mm, drops.volume_mm3)});
         }
     }
     fly(dt);

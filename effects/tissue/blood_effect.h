@@ -43,8 +43,6 @@ class BloodEffect final : public Effect {
     void update_surface(const Pass& pass);
     void run_step(const Pass& pass);
     void show(const Pass& pass);
-    [[nodiscard]] double drop_radius_mm(double volume_mm3) const;
-    [[nodiscard]] bool is_expected(std::size_t wound, double reach_mm) const;
     /// Says where drops may appear until the next look.
     void expect_drops();
     void collect_drops(std::int64_t step);
@@ -65,7 +63,6 @@ class BloodEffect final : public Effect {
     std::vector<Place> places_;
     std::vector<CleanerParams> tools_;
     std::vector<DropSpawn> spawns_;
-    std::vector<glm::vec4> expected_;
     TriangleTree tree_;  ///< for jets
     std::uint64_t tree_key_ = 0;
     BloodMedium medium_;

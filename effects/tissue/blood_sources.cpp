@@ -139,4 +139,27 @@ DropMeter::Drops DropMeter::flow(double volume_mm3, double drop_mm3) {
     return {count, volume};
 }
 
+void ExpectedDrops::begin(double drop_aspect) {
+    aspect_ = drop_aspect;
+    by_wound_.clear();
+    places_.clear();
+}
+
+double ExpectedDrops::reach_mm(double radius_mm, double drop_mm3) const {
+    return radius_mm + std::cbrt(drop_mm3 * 2.0 / (std::numbers::pi * aspect_));
+}
+
+void ExpectedDrops::add(std::size_t wound, const glm::vec2& uv, double radius_mm, double drop_mm3) {
+    by_wound_.resize(std::max(by_wound_.size(), wound + 1));
+    const double reach = reach_mm(radius_mm, drop_mm3);
+    by_wound_[wound] = {uv, reach};
+    places_.emplace_back(uv, static_cast<float>(0.5 * std::numbers::pi * aspect_ * reach * reach * reach),
+                         0.0F);
+}
+
+bool ExpectedDrops::covers(std::size_t wound, const glm::vec2& uv, double radius_mm, double drop_mm3) const {
+    return wound < by_wound_.size() && by_wound_[wound].uv == uv &&
+           by_wound_[wound].reach_mm >= reach_mm(radius_mm, drop_mm3);
+}
+
 }  // namespace viscera::tissue

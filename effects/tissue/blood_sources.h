@@ -1,8 +1,12 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
+
+#include <glm/glm.hpp>
 
 #include "effects/tissue/blood_params.h"
 #include "engine/runtime/frame.h"
@@ -49,6 +53,30 @@ class DropMeter {
 
   private:
     double held_mm3_ = 0.0;
+};
+
+/// Where wounds may let drops appear, so that the blocks there are stepped before they come.
+class ExpectedDrops {
+  public:
+    void begin(double drop_aspect);
+    void clear() { begin(aspect_); }
+    /// `radius_mm`: of the wound, around `uv`; `drop_mm3`: of its largest drop.
+    void add(std::size_t wound, const glm::vec2& uv, double radius_mm, double drop_mm3);
+    [[nodiscard]] bool covers(std::size_t wound, const glm::vec2& uv, double radius_mm,
+                              double drop_mm3) const;
+    /// As the shaders read them: drops as large as the places, u, v, volume [mm^3], 0.
+    [[nodiscard]] std::span<const glm::vec4> places() const { return places_; }
+
+  private:
+    struct Place {
+        glm::vec2 uv{0.0F};
+        double reach_mm = -1.0;  ///< negative: none is expected
+    };
+    [[nodiscard]] double reach_mm(double radius_mm, double drop_mm3) const;
+
+    double aspect_ = 1.0;
+    std::vector<Place> by_wound_;
+    std::vector<glm::vec4> places_;
 };
 
 }  // namespace viscera::tissue

@@ -61,12 +61,7 @@ struct BloodState {
     std::size_t tool_count = 0;
     DropRing ring;
     std::vector<DropMeter> meters;
-    /// Where a wound's drops were expected at the last look.
-    struct Expected {
-        glm::vec2 uv{0.0F};
-        double reach_mm = -1.0;  ///< none: negative
-    };
-    std::vector<Expected> expected;
+    ExpectedDrops expected;  ///< at the last look
     std::uint32_t seed = 0;
     Jets jets;
     bool jets_bleed = false;  ///< a wound sends out a jet in this frame

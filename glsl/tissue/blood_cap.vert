@@ -11,7 +11,7 @@ flat out vec4 v_cap;      // place [mm], radius [mm]
 flat out float v_height;  // in the middle [mm]
 
 const int points = 5;
-const float farthest = 48.0;     // that a drop is drawn [texels]
+const float farthest = 48.0;     // that a drop is drawn [texels]; llvmpipe draws points of up to 255
 const float gutter_width = 4.0;  // at least, so that no seam lies between two looks [texels]
 
 vec2 extent_of(ivec2 texel, float radius) {
