@@ -224,11 +224,10 @@ Work CoagulateEffect::prepare(Prepare& prepare) {
             list_.emplace_back(n, n + 1.0F, n + 2.0F, n + 3.0F);
         }
         drawn_tiles_.clear();
-        const int tiles = (size + TileTree::tile_texels - 1) / TileTree::tile_texels;
-        const auto side = static_cast<float>(tiles);
+        const int side = (size + TileTree::tile_texels - 1) / TileTree::tile_texels;
         const auto count = static_cast<float>(contacts_.contacts().size());
-        for (float y = 0.0F; y < side; y += 1.0F) {
-            for (float x = 0.0F; x < side; x += 1.0F) {
+        for (int y = 0; y < side; ++y) {
+            for (int x = 0; x < side; ++x) {
                 drawn_tiles_.emplace_back(x, y, 0.0F, count);
             }
         }

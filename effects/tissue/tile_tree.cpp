@@ -144,8 +144,8 @@ void TileTree::near(const glm::dvec3& a, const glm::dvec3& b, double radius,
     const double length = glm::distance(a, b);
     const double pieces = std::clamp(std::ceil(length / radius), 1.0, most_pieces);
     const double half = 0.5 * length / pieces;
-    for (double i = 0.5; i < pieces; i += 1.0) {
-        visit(levels_.size() - 1, 0, 0, a + (b - a) * (i / pieces), radius + half, tiles);
+    for (int i = 0; i + 0.5 < pieces; ++i) {
+        visit(levels_.size() - 1, 0, 0, a + (b - a) * ((i + 0.5) / pieces), radius + half, tiles);
     }
 }
 
