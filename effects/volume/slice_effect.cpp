@@ -149,8 +149,8 @@ void SliceEffect::make_table(const gl::Functions& gl, const TexelMap& stored_of_
     const int entries = params_.transfer_function.entries;
     const ExtinctionKnots knots = extinction_knots(function, map, range);
     ClassificationTable table = tabulate(knots, range, entries);
-    table_.emplace(gl::Texture::make_2d(gl, entries, 1, PixelFormat::rgba32f, "transfer function"));
-    table_->upload(std::as_bytes(std::span(table.entries)));
+    table_.emplace(gl::Texture::from_row(gl, std::as_bytes(std::span(table.entries)),
+                                         gl::texture_format(PixelFormat::rgba32f), "transfer function"));
     table_place_ = table.place;
 }
 

@@ -26,15 +26,16 @@ constexpr std::array<AttributeName, 6> attribute_names{{{Attribute::position, "a
                                                         {Attribute::picture_uv, "a_picture_uv"}}};
 
 // Of the textures that a Texture can be; any other sampler could never be bound.
-constexpr std::array<GLenum, 9> sampler_types{GL_SAMPLER_2D,
-                                              GL_SAMPLER_3D,
-                                              GL_SAMPLER_2D_ARRAY,
-                                              GL_SAMPLER_2D_SHADOW,
-                                              GL_INT_SAMPLER_2D,
-                                              GL_INT_SAMPLER_3D,
-                                              GL_UNSIGNED_INT_SAMPLER_2D,
-                                              GL_UNSIGNED_INT_SAMPLER_3D,
-                                              GL_UNSIGNED_INT_SAMPLER_2D_ARRAY};
+constexpr std::array<GLenum, 10> sampler_types{GL_SAMPLER_2D,
+                                               GL_SAMPLER_BUFFER,
+                                               GL_SAMPLER_3D,
+                                               GL_SAMPLER_2D_ARRAY,
+                                               GL_SAMPLER_2D_SHADOW,
+                                               GL_INT_SAMPLER_2D,
+                                               GL_INT_SAMPLER_3D,
+                                               GL_UNSIGNED_INT_SAMPLER_2D,
+                                               GL_UNSIGNED_INT_SAMPLER_3D,
+                                               GL_UNSIGNED_INT_SAMPLER_2D_ARRAY};
 
 bool is_sampler(GLenum type) {
     return std::ranges::find(sampler_types, type) != sampler_types.end();
@@ -327,6 +328,7 @@ void Program::unbind_textures() const {
             gl.BindTexture(GL_TEXTURE_2D, 0);
             gl.BindTexture(GL_TEXTURE_3D, 0);
             gl.BindTexture(GL_TEXTURE_2D_ARRAY, 0);
+            gl.BindTexture(GL_TEXTURE_BUFFER, 0);
             gl.BindSampler(unit, 0);
         }
     }

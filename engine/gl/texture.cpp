@@ -113,6 +113,26 @@ Texture Texture::from_levels(const Functions& gl, std::span<const Image> levels,
     return texture;
 }
 
+Texture Texture::from_row(const Functions& gl, std::span<const std::byte> content, TextureFormat format,
+                          std::string_view label) {
+    GLint limit = 0;
+    gl.GetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &limit);
+    const std::size_t texels = content.size() / format.bytes_per_pixel;
+    if (texels < 1 || texels > static_cast<std::size_t>(limit)) {
+        throw Error(ErrorCode::limit, std::string(label),
+                    "a row of " + std::to_string(texels) + " texels cannot be had: it must have 1 to " +
+                        std::to_string(limit) + " on this device");
+    }
+    GLuint id = 0;
+    gl.GenTextures(1, &id);
+    Texture texture(TextureHandle::own(gl, id), GL_TEXTURE_BUFFER, {static_cast<int>(texels), 1, 1}, format);
+    texture.buffer_.emplace(gl, content, BufferUsage::fixed);
+    texture.bind_for_editing();
+    label_object(gl, GL_TEXTURE, id, label);
+    gl.TexBuffer(GL_TEXTURE_BUFFER, format.internal, texture.buffer_->id());
+    return texture;
+}
+
 Texture Texture::wrap(const Functions& gl, GLuint id, GLenum target, Extent extent, TextureFormat format) {
     return {TextureHandle::wrap(gl, id), target, extent, format};
 }
@@ -140,6 +160,9 @@ void Texture::upload_region(Extent offset, Extent size, std::span<const std::byt
                     to_text(size) + " texels take " +
                         std::to_string(texel_count(size) * format_.bytes_per_pixel) + " bytes, not " +
                         std::to_string(texels.size()));
+    }
+    if (buffer_) {
+        return buffer_->update(static_cast<std::size_t>(offset.width) * format_.bytes_per_pixel, texels);
     }
     const Functions& api = gl();
     set_tight_unpacking(api);

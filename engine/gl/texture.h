@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string_view>
 
 #include "engine/core/image.h"
+#include "engine/gl/buffer.h"
 #include "engine/gl/format.h"
 #include "engine/gl/handle.h"
 
@@ -19,9 +21,9 @@ struct Extent {
     bool operator==(const Extent&) const = default;
 };
 
-/// A 2-D or 3-D texture or an array of 2-D layers, owned or wrapped, with one level but for from_levels().
-/// How it is filtered is a Sampler's business. All functions that edit it use editing_unit and leave it
-/// active.
+/// A 2-D or 3-D texture, an array of 2-D layers, or a row of texels in a buffer, owned or wrapped, with one
+/// level but for from_levels(). How it is filtered is a Sampler's business. All functions that edit it use
+/// editing_unit and leave it active.
 class Texture {
   public:
     /// Uninitialised storage. Throws Error(limit), which names `label`, when the extent is not positive,
@@ -42,6 +44,11 @@ class Texture {
     /// the one before, rounded down, and at least 1. Throws Error(usage) for others.
     [[nodiscard]] static Texture from_levels(const Functions& gl, std::span<const Image> levels,
                                              std::string_view label);
+    /// A row of texels in a buffer, fetched by number (samplerBuffer) and never filtered: the cheapest way to
+    /// a table. `content`: tightly packed; its size is the texture's. Throws Error(limit), which names
+    /// `label`, for none, for more than the device takes (at least 65,536), and when out of memory.
+    [[nodiscard]] static Texture from_row(const Functions& gl, std::span<const std::byte> content,
+                                          TextureFormat format, std::string_view label);
     /// A texture of the host's, which stays the host's. `target`: GL_TEXTURE_2D, GL_TEXTURE_3D or
     /// GL_TEXTURE_2D_ARRAY.
     [[nodiscard]] static Texture wrap(const Functions& gl, GLuint id, GLenum target, Extent extent,
@@ -82,6 +89,7 @@ class Texture {
     GLenum target_ = GL_TEXTURE_2D;
     Extent extent_;
     TextureFormat format_;
+    std::optional<Buffer> buffer_;  ///< of a row
 };
 
 }  // namespace viscera::gl

@@ -1,5 +1,5 @@
 // Colour and extinction over the volume's value: effects/volume/classification.h.
-uniform sampler2D u_transfer;   // (r, g, b, extinction [1/mm]) by value, one row
+uniform samplerBuffer u_transfer;  // (r, g, b, extinction [1/mm]) by value
 uniform vec3 u_transfer_place;  // texel value -> entry: x * value + y, from 0 to z
 #ifdef HARDWARE
 uniform float u_transfer_seen;  // below it, entries show nothing
@@ -15,10 +15,10 @@ vec4 classify(float value) {
 #endif
 #ifdef TRANSFER_LINEAR
     int entry = int(place);
-    vec4 low = texelFetch(u_transfer, ivec2(entry, 0), 0);
-    vec4 high = texelFetch(u_transfer, ivec2(min(entry + 1, int(u_transfer_place.z)), 0), 0);
+    vec4 low = texelFetch(u_transfer, entry);
+    vec4 high = texelFetch(u_transfer, min(entry + 1, int(u_transfer_place.z)));
     return mix(low, high, place - float(entry));
 #else
-    return texelFetch(u_transfer, ivec2(int(place + 0.5), 0), 0);
+    return texelFetch(u_transfer, int(place + 0.5));
 #endif
 }

@@ -143,6 +143,33 @@ TEST_P(ProgramTest, SamplersHaveUnitsOfTheirOwn) {
     EXPECT_EQ(pixel(program), glm::vec4(0.0F));
 }
 
+TEST_P(ProgramTest, RowsOfTexelsAreFetchedByNumber) {
+    const gl::Program program = make(
+        "uniform samplerBuffer row; uniform int number; void main() { colour = texelFetch(row, number); }");
+    const std::vector<glm::vec4> texels{{0.25F, 1e-30F, -7.0F, 1e30F}, {1, 2, 3, 4}, {5, 6, 7, 8}};
+    const gl::TextureFormat format = gl::texture_format(PixelFormat::rgba32f);
+    gl::Texture row = gl::Texture::from_row(gl(), std::as_bytes(std::span(texels)), format, "a row");
+    EXPECT_EQ(row.extent(), (gl::Extent{3, 1, 1}));
+    EXPECT_EQ(row.bytes(), 48U);
+    const gl::Sampler sampler(gl(), {.filter = gl::Filter::nearest});
+    const auto fetched = [&](int number) {
+        program.use();
+        program.bind("row", row, sampler);
+        program.set("number", number);
+        return pixel(program);
+    };
+    EXPECT_EQ(fetched(0), texels[0]);
+    EXPECT_EQ(fetched(2), texels[2]);
+    row.upload_region({1, 0, 0}, {1, 1, 1}, std::as_bytes(std::span(texels).first(1)));
+    EXPECT_EQ(fetched(1), texels[0]);
+    program.unbind_textures();
+    EXPECT_NE(pixel(program), texels[0]);
+    const auto error = error_of([&] { (void)gl::Texture::from_row(gl(), {}, format, "an empty row"); });
+    ASSERT_TRUE(error);
+    EXPECT_EQ(error->code(), ErrorCode::limit);
+    EXPECT_EQ(error->where(), "an empty row");
+}
+
 TEST_P(ProgramTest, TooManyTexturesAreALimit) {
     const auto error = error_of([&] {
         (void)make(
