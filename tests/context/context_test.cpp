@@ -6,8 +6,8 @@
 #include <thread>
 
 #include "engine/gl/functions.h"
-#include "tests/core/error_of.h"
 #include "tests/context/offscreen.h"
+#include "tests/core/error_of.h"
 
 namespace viscera {
 namespace {

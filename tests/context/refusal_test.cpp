@@ -11,8 +11,8 @@
 #include "engine/context/shared_library.h"
 #include "engine/context/window.h"
 #include "tests/context/environment.h"
-#include "tests/core/error_of.h"
 #include "tests/context/offscreen.h"
+#include "tests/core/error_of.h"
 
 namespace viscera {
 namespace {

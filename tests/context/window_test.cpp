@@ -8,9 +8,9 @@
 
 #include "engine/context/shared_library.h"
 #include "tests/context/environment.h"
-#include "tests/core/error_of.h"
 #include "tests/context/offscreen.h"
 #include "tests/context/xvfb.h"
+#include "tests/core/error_of.h"
 
 namespace viscera {
 namespace {
