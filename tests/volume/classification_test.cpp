@@ -242,6 +242,15 @@ TEST(StoredRanges, AreNoWiderThanTheyMustBe) {
     EXPECT_EQ(all[0].high, std::numeric_limits<float>::infinity());
 }
 
+TEST(ClassificationTable, SaysWhichEntryIsTheFirstToShowAnything) {
+    ClassificationTable table{
+        .entries = {glm::vec4(1, 1, 1, 0), glm::vec4(0), glm::vec4(0, 0, 0, 1e-30F), glm::vec4(0)}};
+    EXPECT_EQ(table.first_seen(), 2U);
+    table.entries[2].a = 0.0F;
+    EXPECT_EQ(table.first_seen(), 4U);
+    EXPECT_EQ(ClassificationTable{}.first_seen(), 0U);
+}
+
 TEST(StoredRanges, OfATableHoldAllThatItsNearestEntryShows) {
     std::mt19937 random(29);
     const TexelMap stored_of_texel{65535.0, -32768.0};
