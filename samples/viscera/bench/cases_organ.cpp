@@ -102,7 +102,6 @@ void run_organ(Lab& lab) {
         {"focus", with(textured(), "focus", focus), json::object()},
         {"membrane, sorted", with(textured(), "blending", "blended"), json::object()},
         {"everything", everything, all_targets},
-        // The last: whoever is given its depth next has hardly anything to clear.
         {"clear of the depth", speck, json::object(), "bench.organ_ceiling"}};
     for (std::size_t i = 0; i < features.size(); ++i) {
         json targets = features[i].targets;
@@ -112,6 +111,10 @@ void run_organ(Lab& lab) {
         scene.pass("feature" + number, features[i].effect, features[i].parameters, targets);
         scene.output("bench.colour" + number);
     }
+    // Whoever is given the depth of the clear next has hardly anything to clear.
+    scene.pass("fill", "bench.organ_ceiling", textured(),
+               {{"colour", "bench.fill"}, {"depth", "bench.fill_depth"}});
+    scene.output("bench.fill");
     Stage stage(lab, scene.json());
     stage.run();
     const Samples& base = stage.pass("feature0");
