@@ -10,7 +10,6 @@
 #include "engine/core/hash.h"
 #include "engine/core/log.h"
 #include "engine/gl/mesh.h"
-#include "engine/io/mesh.h"
 #include "engine/runtime/pass.h"
 #include "engine/runtime/region.h"
 
@@ -41,19 +40,8 @@ glm::dmat4 with_far_behind(const View& view, const Bounds& bounds, const glm::dm
 void LimitsParams::visit(ParamVisitor& v) {
     v.field({.name = "volume", .doc = "The volume whose rays are limited, as in volume.ray_cast."}, volume);
     v.field({.name = "crop", .doc = "Part of the volume, as in volume.ray_cast."}, crop);
-    v.field({.name = "limits_mesh",
-             .doc = "Closed surface in the volume's world instead of its box: glTF, GLB, STL, OBJ, PLY or "
-                    "VTP."},
-            limits_mesh);
-    v.field({.name = "mesh_filter", .doc = "Only meshes whose name contains this; empty: all."}, mesh_filter);
-    v.field({.name = "mm_per_unit",
-             .doc = "Length of the file's unit; by default 1000 for glTF, 1 for the others.",
-             .unit = "mm",
-             .min = 0.0,
-             .min_excluded = true},
-            mm_per_unit);
-    v.field({.name = "mesh_placement", .doc = "Where the mesh is put; its centre is its box's."},
-            mesh_placement);
+    mesh.visit(v, "limits_mesh",
+               "Closed surface in the volume's world instead of its box: glTF, GLB, STL, OBJ, PLY or VTP.");
 }
 
 MeshData box_mesh(const glm::vec3& low, const glm::vec3& high) {
@@ -79,19 +67,6 @@ double signed_volume6(const MeshData& mesh) {
         sum += glm::dot(at(0), glm::cross(at(1), at(2)));
     }
     return sum;
-}
-
-MeshData mesh_in_local(const AssetPath& file, const std::string& filter, std::optional<double> mm_per_unit,
-                       const PlacementParams& placement, const glm::dmat4& local_to_world, Log& log) {
-    MeshData mesh =
-        io::merge(io::load_meshes(file.path, {.scale_mm_per_unit = mm_per_unit, .name_filter = filter}, log));
-    const Bounds bounds = mesh.bounds();
-    const glm::dmat4 to_local =
-        glm::inverse(local_to_world) * placement_matrix(placement, 0.5 * glm::dvec3(bounds.min + bounds.max));
-    for (glm::vec3& position : mesh.positions) {
-        position = to_local * glm::dvec4(position, 1.0);
-    }
-    return mesh;
 }
 
 LimitsEffect::LimitsEffect(Side side)
@@ -126,13 +101,12 @@ std::vector<Port> LimitsEffect::ports() const {
 }
 
 void LimitsEffect::find_mesh(Prepare& prepare) {
-    if (params_.limits_mesh.empty()) {
+    if (params_.mesh.empty()) {
         const CropBox box = crop_box(params_.crop, grid_.dims);
         mesh_ = space_.shape.curvilinear() ? sector_mesh(space_, space_.coordinates(box.low, box.high))
                                            : box_mesh(box.low, box.high);
     } else {
-        mesh_ = mesh_in_local(params_.limits_mesh, params_.mesh_filter, params_.mm_per_unit,
-                              params_.mesh_placement, space_.local_to_world, prepare.log());
+        mesh_ = params_.mesh.in_local(space_.local_to_world, prepare.log());
     }
     bounds_ = mesh_.bounds();
     inside_out_ = signed_volume6(mesh_) < 0.0;

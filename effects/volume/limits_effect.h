@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "effects/volume/placed_mesh.h"
 #include "effects/volume/ray_cast_params.h"
 #include "effects/volume/space.h"
 #include "engine/core/mesh_data.h"
@@ -15,10 +16,7 @@ namespace viscera::volume {
 struct LimitsParams {
     SourceParams volume;
     CropParams crop;
-    AssetPath limits_mesh;
-    std::string mesh_filter;
-    std::optional<double> mm_per_unit;
-    PlacementParams mesh_placement;
+    PlacedMesh mesh;
 
     void visit(ParamVisitor& v);
 };
@@ -27,11 +25,6 @@ struct LimitsParams {
 [[nodiscard]] MeshData box_mesh(const glm::vec3& low, const glm::vec3& high);
 /// Six times the volume enclosed by a closed mesh; negative when its triangles face inwards.
 [[nodiscard]] double signed_volume6(const MeshData& mesh);
-
-/// Triangles of a file, placed in the world, in local coordinates. Throws Error(file).
-[[nodiscard]] MeshData mesh_in_local(const AssetPath& file, const std::string& filter,
-                                     std::optional<double> mm_per_unit, const PlacementParams& placement,
-                                     const glm::dmat4& local_to_world, Log& log);
 
 /// Draws where rays enter a volume, or leave it, as pictures of local coordinates: the faces of its box, or
 /// of a closed mesh. Of several faces behind one another the nearest entry and the farthest exit are kept;

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "effects/volume/limits_effect.h"
 #include "effects/volume/prefilter.h"
 #include "engine/core/error.h"
 #include "engine/core/hash.h"
@@ -74,8 +73,7 @@ void SliceEffect::find_surface(Prepare& prepare) {
             position = space_.low + glm::dvec3(position) * (space_.high - space_.low);
         }
     } else if (in_camera()) {
-        surface_ = mesh_in_local(params_.mesh, params_.mesh_filter, params_.mm_per_unit,
-                                 params_.mesh_placement, space_.local_to_world, prepare.log());
+        surface_ = params_.mesh.in_local(space_.local_to_world, prepare.log());
     }
     bounds_ = surface_.bounds();
     surface_key_ =

@@ -37,19 +37,9 @@ void SliceParams::visit(ParamVisitor& v) {
          .doc = "picture: the plane fills the picture; camera: as the scene's camera sees it, with depth."},
         view);
     v.field({.name = "plane", .doc = "Where the volume is cut."}, plane);
-    v.field({.name = "mesh",
-             .doc = "Surface that cuts the volume instead of the plane (camera): glTF, GLB, STL, OBJ, PLY or "
-                    "VTP."},
-            mesh);
-    v.field({.name = "mesh_filter", .doc = "Only meshes whose name contains this; empty: all."}, mesh_filter);
-    v.field({.name = "mm_per_unit",
-             .doc = "Length of the file's unit; by default 1000 for glTF, 1 for the others.",
-             .unit = "mm",
-             .min = 0.0,
-             .min_excluded = true},
-            mm_per_unit);
-    v.field({.name = "mesh_placement", .doc = "Where the mesh is put; its centre is its box's."},
-            mesh_placement);
+    mesh.visit(
+        v, "mesh",
+        "Surface that cuts the volume instead of the plane (camera): glTF, GLB, STL, OBJ, PLY or VTP.");
     v.field({.name = "height_mm",
              .doc = "Height of the picture, whose pixels are square; 0: all of the volume (picture).",
              .unit = "mm",

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 
+#include "effects/volume/placed_mesh.h"
 #include "effects/volume/reconstruction.h"
 #include "effects/volume/slice_plane.h"
 #include "effects/volume/source.h"
@@ -32,10 +32,7 @@ struct SliceParams {
     SourceParams volume;
     SliceView view = SliceView::picture;
     PlaneParams plane;
-    AssetPath mesh;
-    std::string mesh_filter;
-    std::optional<double> mm_per_unit;
-    PlacementParams mesh_placement;
+    PlacedMesh mesh;
     double height_mm = 0.0;
     SlabParams slab;
     TransferParams transfer_function;

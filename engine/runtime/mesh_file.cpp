@@ -5,9 +5,9 @@
 
 namespace viscera {
 
-void MeshFile::visit(ParamVisitor& v, std::string_view file_key, std::string_view filter_key) {
-    v.field({.name = file_key, .doc = "Surface: glTF, GLB, STL, OBJ, PLY or VTP.", .required = true}, file);
-    v.field({.name = filter_key, .doc = "Only meshes whose name contains this; empty: all."}, filter);
+void MeshFile::visit(ParamVisitor& v, const MeshFileNames& names) {
+    v.field({.name = names.file, .doc = names.doc, .required = names.required}, file);
+    v.field({.name = names.filter, .doc = "Only meshes whose name contains this; empty: all."}, filter);
     v.field({.name = "mm_per_unit",
              .doc = "Length of the file's unit; by default 1000 for glTF, 1 for the others.",
              .unit = "mm",

@@ -12,6 +12,14 @@ namespace viscera {
 
 class Log;
 
+/// How the fields of a MeshFile are called among other parameters; the third's key is `mm_per_unit`.
+struct MeshFileNames {
+    std::string_view file = "mesh";
+    std::string_view filter = "mesh_filter";
+    std::string_view doc = "Surface: glTF, GLB, STL, OBJ, PLY or VTP.";  ///< of the file
+    bool required = true;                                                ///< whether a file must be named
+};
+
 /// Which meshes of which file, and how long the file's unit is. The fields stand among those of the
 /// parameters that have such a file.
 struct MeshFile {
@@ -19,9 +27,7 @@ struct MeshFile {
     std::string filter;
     std::optional<double> mm_per_unit;
 
-    /// The keys of `file` and `filter`; the third's is `mm_per_unit`.
-    void visit(ParamVisitor& v, std::string_view file_key = "mesh",
-               std::string_view filter_key = "mesh_filter");
+    void visit(ParamVisitor& v, const MeshFileNames& names = {});
     /// Hash of all of it.
     [[nodiscard]] std::uint64_t key() const;
     /// The file's meshes, apart or as one. Throws as io::load_meshes().

@@ -60,7 +60,7 @@ glm::vec3 turned(const glm::vec3& normal, const glm::vec3& from, const glm::vec3
 }  // namespace
 
 void SurfaceMeshParams::visit(ParamVisitor& v) {
-    MeshFile::visit(v, "file", "filter");
+    MeshFile::visit(v, {.file = "file", .filter = "filter"});
     v.field({.name = "placement", .doc = "Where the mesh is put; its centre is its box's."}, placement);
     v.field({.name = "host_positions",
              .doc = "Name of the host's array of 3 floats [mm] per vertex that moves them; empty: none."},
