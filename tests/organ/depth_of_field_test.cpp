@@ -54,8 +54,9 @@ class DepthOfField : public testing::Test {
 };
 
 float noise(int x, int y, int c) {
-    const unsigned h = static_cast<unsigned>(x * 73856093) ^ static_cast<unsigned>(y * 19349663) ^
-                       static_cast<unsigned>((c + 1) * 83492791);
+    // Unsigned throughout: their overflow is defined.
+    const unsigned h = (static_cast<unsigned>(x) * 73856093U) ^ (static_cast<unsigned>(y) * 19349663U) ^
+                       (static_cast<unsigned>(c + 1) * 83492791U);
     return static_cast<float>((h * 2654435761U) >> 16) / 65535.0F;
 }
 
