@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "engine/core/pixel_index.h"
+
 namespace viscera::assets {
 namespace {
 
@@ -66,12 +68,6 @@ glm::dvec3 colour_at(double hu, std::uint8_t label) {
     return glm::mix(left.colour, right->colour, (hu - left.hu) / (right->hu - left.hu));
 }
 
-std::size_t index_of(const glm::ivec3& v, const glm::ivec3& dims) {
-    const glm::tvec3<std::size_t> at(v);
-    const glm::tvec3<std::size_t> n(dims);
-    return at.x + n.x * (at.y + n.y * at.z);
-}
-
 }  // namespace
 
 Volume make_cryosections(const HeadVolumes& head) {
@@ -87,7 +83,7 @@ Volume make_cryosections(const HeadVolumes& head) {
                 glm::dvec3 sum(0.0);
                 for (int i = 0; i < fine * fine * fine; ++i) {
                     const glm::ivec3 at = fine * v + glm::ivec3(i & 1, (i >> 1) & 1, i >> 2);
-                    const std::size_t voxel = index_of(at, head.ct.grid.dims);
+                    const std::size_t voxel = voxel_index(at, head.ct.grid.dims);
                     std::int16_t hu = 0;
                     std::memcpy(&hu, head.ct.voxels.data() + voxel * sizeof hu, sizeof hu);
                     sum += colour_at(hu, static_cast<std::uint8_t>(head.labels.voxels[voxel]));

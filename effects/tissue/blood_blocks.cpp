@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "effects/tissue/blood_programs.h"
+#include "engine/core/pixel_index.h"
 #include "engine/runtime/pass.h"
 
 namespace viscera::tissue {
@@ -116,8 +117,7 @@ void BloodBlocks::lie_on(const Image& position, std::span<const SeamLink> links,
     std::vector<unsigned char> cells(count * count, 0);
     for (int y = 0; y < size_; ++y) {
         for (int x = 0; x < size_; ++x) {
-            const std::size_t block =
-                static_cast<std::size_t>(y / block_side) * count + static_cast<std::size_t>(x / block_side);
+            const std::size_t block = pixel_index(x / block_side, y / block_side, blocks_);
             const float coverage = position.at(x, y, 3);
             surface[block] = coverage > 0.0F ? 255 : surface[block];
             cells[block] = coverage > 0.75F ? 1 : cells[block];

@@ -5,20 +5,23 @@
 #include <experimental/simd>
 
 #include "engine/core/error.h"
+#include "engine/core/pixel_index.h"
 
 namespace viscera::volume {
 namespace {
 
-std::size_t at(const glm::ivec3& index, const glm::ivec3& dims) {
-    return static_cast<std::size_t>(index.x) +
-           static_cast<std::size_t>(dims.x) *
-               (static_cast<std::size_t>(index.y) +
-                static_cast<std::size_t>(dims.y) * static_cast<std::size_t>(index.z));
+template <class Visit>
+void each_row(const glm::ivec3& dims, const Visit& visit) {
+    for (int z = 0; z < dims.z; ++z) {
+        for (int y = 0; y < dims.y; ++y) {
+            visit(y, z);
+        }
+    }
 }
 
 std::size_t checked_count(const glm::ivec3& dims, std::span<const std::uint8_t> kinds) {
     const bool any = dims.x > 0 && dims.y > 0 && dims.z > 0;
-    if (kinds.size() != (any ? at(dims - 1, dims) + 1 : 0)) {
+    if (kinds.size() != (any ? voxel_index(dims - 1, dims) + 1 : 0)) {
         throw Error(ErrorCode::usage, "distances of bricks", "kinds and grid differ in size");
     }
     return kinds.size();
@@ -49,12 +52,10 @@ class DistanceGrid {
     /// its steps in any order: first those along its row, then those forward through memory, then those
     /// back. So one pass each finds it.
     void spread() const {
-        for (int z = 0; z < dims_.z; ++z) {
-            for (int y = 0; y < dims_.y; ++y) {
-                spread_along(row(y, z));
-                approach(row(y, z), {row(y - 1, z), row(y - 1, z - 1), row(y, z - 1), row(y + 1, z - 1)});
-            }
-        }
+        each_row(dims_, [&](int y, int z) {
+            spread_along(row(y, z));
+            approach(row(y, z), {row(y - 1, z), row(y - 1, z - 1), row(y, z - 1), row(y + 1, z - 1)});
+        });
         for (int z = dims_.z - 1; z >= 0; --z) {
             for (int y = dims_.y - 1; y >= 0; --y) {
                 approach(row(y, z), {row(y + 1, z), row(y + 1, z + 1), row(y, z + 1), row(y - 1, z + 1)});
@@ -160,15 +161,6 @@ void store(const Bricks& bricks, std::uint8_t* to) {
     bricks.copy_to(to, std::experimental::element_aligned);
 }
 
-template <class Visit>
-void each_row(const glm::ivec3& dims, const Visit& visit) {
-    for (int z = 0; z < dims.z; ++z) {
-        for (int y = 0; y < dims.y; ++y) {
-            visit(y, z);
-        }
-    }
-}
-
 /// Bricks from each brick to the next one of another kind in its row, up (`step` 1) or down (-1) the row.
 /// Ways of 1, 2, 4, 8 and 16 find it for all bricks at once; all rows are done with one way before the next,
 /// since what was only just written is slow to read again.
@@ -256,21 +248,18 @@ void distance_to_others(glm::ivec3 dims, std::span<const std::uint8_t> kinds, in
         return;
     }
     const DistanceGrid grid(dims, scratch.grid, scratch.row);
-    const auto for_rows = [&](const auto& act) {
-        for (int z = 0; z < dims.z; ++z) {
-            for (int y = 0; y < dims.y; ++y) {
-                act(at({0, y, z}, dims), grid.row(y, z));
-            }
-        }
-    };
     const auto width = static_cast<std::size_t>(dims.x);
-    for_rows([&](std::size_t begin, std::uint8_t* row) {
+    each_row(dims, [&](int y, int z) {
+        const std::size_t begin = voxel_index({0, y, z}, dims);
+        std::uint8_t* row = grid.row(y, z);
         for (std::size_t x = 0; x < width; ++x) {
             row[x] = kinds[begin + x] == kind ? distance_reach : 0;
         }
     });
     grid.spread();
-    for_rows([&](std::size_t begin, const std::uint8_t* row) {
+    each_row(dims, [&](int y, int z) {
+        const std::size_t begin = voxel_index({0, y, z}, dims);
+        const std::uint8_t* row = grid.row(y, z);
         for (std::size_t x = 0; x < width; ++x) {
             distance[begin + x] = kinds[begin + x] == kind ? row[x] : distance[begin + x];
         }
@@ -288,7 +277,7 @@ void sizes_ahead(glm::ivec3 dims, std::span<const std::uint8_t> kinds, std::vect
     scratch.along.assign(rows.bytes(dims.z), distance_reach);
     scratch.sizes.assign(rows.bytes(2), distance_reach);
     each_row(dims, [&](int y, int z) {
-        rows.copy_kinds(&kinds[at({0, y, z}, dims)], rows.row(scratch.kinds.data(), y, z));
+        rows.copy_kinds(&kinds[voxel_index({0, y, z}, dims)], rows.row(scratch.kinds.data(), y, z));
     });
     for (int way = 0; way < 8; ++way) {
         const glm::ivec3 half(way / 4, way % 2, way / 2 % 2);
@@ -297,7 +286,8 @@ void sizes_ahead(glm::ivec3 dims, std::span<const std::uint8_t> kinds, std::vect
         }
         sizes_one_way(dims, rows, scratch.kinds.data(), scratch.along.data(), glm::bvec3(half),
                       scratch.sizes.data(), [&](int y, int z, const Row& row) {
-                          std::uint8_t* target = &texels[at(glm::ivec3(0, y, z) + half * dims, 2 * dims)];
+                          std::uint8_t* target =
+                              &texels[voxel_index(glm::ivec3(0, y, z) + half * dims, 2 * dims)];
                           for (int x = 0; x < dims.x; ++x) {
                               target[x] = static_cast<std::uint8_t>(kind_step * row.kinds[x] + row.sizes[x]);
                           }

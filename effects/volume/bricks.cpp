@@ -9,16 +9,10 @@
 #include <utility>
 
 #include "engine/core/error.h"
+#include "engine/core/pixel_index.h"
 
 namespace viscera::volume {
 namespace {
-
-std::size_t at(const glm::ivec3& index, const glm::ivec3& dims) {
-    return static_cast<std::size_t>(index.x) +
-           static_cast<std::size_t>(dims.x) *
-               (static_cast<std::size_t>(index.y) +
-                static_cast<std::size_t>(dims.y) * static_cast<std::size_t>(index.z));
-}
 
 /// Lower each element of `low` and raise each of `high` to the values beside them. Rows instead of single
 /// bricks, so that the compiler makes vector code of it.
@@ -39,7 +33,7 @@ void load_inside(const Volume& volume, const glm::ivec3& first, int channel, flo
     const auto channels = static_cast<std::size_t>(volume.channels);
     const std::byte* source =
         volume.voxels.data() +
-        (at(first, volume.grid.dims) * channels + static_cast<std::size_t>(channel)) * sizeof(T);
+        (voxel_index(first, volume.grid.dims) * channels + static_cast<std::size_t>(channel)) * sizeof(T);
     if (channels == 1) {
         std::memcpy(row.data(), source, row.size() * sizeof(T));
     } else {
@@ -134,7 +128,7 @@ void summarise_as(BrickGrid& bricks, const Volume& volume, int channel, float em
             for (brick.x = box.first.x; brick.x < end_brick.x; ++brick.x) {
                 const int begin = first_voxel(brick).x - first.x;
                 const int stop = end_voxel(brick).x - first.x;
-                const std::size_t i = at(brick, bricks.dims);
+                const std::size_t i = voxel_index(brick, bricks.dims);
                 bricks.min[i] =
                     static_cast<float>(*std::min_element(line_low.begin() + begin, line_low.begin() + stop));
                 bricks.max[i] = static_cast<float>(
@@ -188,7 +182,7 @@ void check(const Volume& volume, int channel, int size, int border) {
 
 BrickGrid grid_of(const Volume& volume, int size, int border) {
     BrickGrid bricks{.dims = (volume.grid.dims + size - 1) / size, .size = size, .border = border};
-    const std::size_t count = at(bricks.dims - 1, bricks.dims) + 1;
+    const std::size_t count = voxel_index(bricks.dims - 1, bricks.dims) + 1;
     bricks.min.resize(count);
     bricks.max.resize(count);
     return bricks;
@@ -293,7 +287,7 @@ void find_occupied(const BrickGrid& bricks, std::span<const StoredRange> visible
     const auto width = static_cast<std::size_t>(end.x - first.x);
     for (int z = first.z; z < end.z; ++z) {
         for (int y = first.y; y < end.y; ++y) {
-            const std::size_t begin = at({first.x, y, z}, bricks.dims);
+            const std::size_t begin = voxel_index({first.x, y, z}, bricks.dims);
             mark_visible({&bricks.min[begin], width}, {&bricks.max[begin], width}, visible, overshoot,
                          {&occupied[begin], width});
         }

@@ -5,17 +5,12 @@
 #include <limits>
 #include <utility>
 
+#include "engine/core/pixel_index.h"
+
 namespace viscera::volume {
 namespace {
 
 constexpr int samples_per_axis = 4;
-
-std::size_t index_of(const glm::ivec3& cell, const glm::ivec3& dims) {
-    return (static_cast<std::size_t>(cell.z) * static_cast<std::size_t>(dims.y) +
-            static_cast<std::size_t>(cell.y)) *
-               static_cast<std::size_t>(dims.x) +
-           static_cast<std::size_t>(cell.x);
-}
 
 template <class Visit>
 void each_cell(const glm::ivec3& dims, Visit visit) {
@@ -95,7 +90,7 @@ double ExtinctionGrid::at(const glm::dvec3& texture) const {
         const glm::ivec3 corner(i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z);
         const double weight =
             (i & 1 ? t.x : 1.0 - t.x) * (i & 2 ? t.y : 1.0 - t.y) * (i & 4 ? t.z : 1.0 - t.z);
-        sum += weight * static_cast<double>(per_mm[index_of(corner, dims)]);
+        sum += weight * static_cast<double>(per_mm[voxel_index(corner, dims)]);
     }
     return sum;
 }

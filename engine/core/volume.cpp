@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "engine/core/error.h"
+#include "engine/core/pixel_index.h"
 
 namespace viscera {
 
@@ -133,10 +134,7 @@ void VolumeGrid::validate(std::string_view where) const {
 }
 
 double Volume::stored(const glm::ivec3& index, int channel) const {
-    const std::size_t voxel = static_cast<std::size_t>(index.x) +
-                              static_cast<std::size_t>(grid.dims.x) *
-                                  (static_cast<std::size_t>(index.y) +
-                                   static_cast<std::size_t>(grid.dims.y) * static_cast<std::size_t>(index.z));
+    const std::size_t voxel = voxel_index(index, grid.dims);
     const std::size_t place = voxel * static_cast<std::size_t>(channels) + static_cast<std::size_t>(channel);
     const std::byte* const bytes = voxels.data() + place * bytes_of(type);
     switch (type) {
