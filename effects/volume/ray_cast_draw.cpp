@@ -39,6 +39,7 @@ void RayCastEffect::set_colours(const gl::Program& program, double share_per_tex
         glm::vec2(glm::dvec2(how.opacity / how.samples, how.samples / source_->volume().grid.diagonal_mm())));
     program.set("u_colour_contrast", glm::vec2(glm::dvec2(how.brightness, how.contrast)));
 }
+
 void RayCastEffect::bind_blue_noise(const Pass& pass, const gl::Program& program) {
     if (!blue_noise_) {
         blue_noise_ = pass.assets().shared<gl::Texture>(Hash().add("blue noise").value(), [&] {
@@ -101,8 +102,7 @@ void RayCastEffect::draw(const Pass& pass) {
         volume::bind(params_.isosurface, TexelMap{volume.slope * map.scale, volume.value_of(map.offset)},
                      params_.sampling.termination, program);
     }
-    program.set("u_transfer_seen", table_seen_);
-    program.set("u_transfer_place", glm::vec3(table_place_, table_->width() - 1));
+    table_->bind(pass, program);
     if (slabs_) {
         slabs_->bind(pass, program);
     }
@@ -122,7 +122,6 @@ void RayCastEffect::draw(const Pass& pass) {
     pass.bind(program, "u_volume", gpu.texture(),
               params_.sampling.reconstruction.texture_filter(function_.nearest),
               space_.shape.wrap && !gpu.is_atlas() ? gl::Wrap::repeat : gl::Wrap::clamp);
-    pass.bind(program, "u_transfer", *table_, gl::Filter::nearest);
     if (params_.sub_volume) {
         program.set("u_sub_volume_depth", static_cast<float>(params_.sub_volume->depth_mm));
     }

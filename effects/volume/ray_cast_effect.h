@@ -10,6 +10,7 @@
 #include "effects/volume/ray_frame.h"
 #include "effects/volume/skip_map.h"
 #include "effects/volume/slab_texture.h"
+#include "effects/volume/transfer_texture.h"
 #include "engine/core/mesh_data.h"
 #include "engine/runtime/effect.h"
 
@@ -102,10 +103,8 @@ class RayCastEffect final : public Effect {
     std::shared_ptr<const gl::Texture> blue_noise_;
     MixedPlan plan_;
     std::optional<SlabTexture> slabs_;  ///< preintegrated only
-    std::optional<gl::Texture> table_;
+    std::optional<TransferTexture> table_;
     std::uint64_t table_key_ = 0;
-    glm::dvec2 table_place_{0.0};
-    float table_seen_ = 0.0F;  ///< table entries before it show nothing
 };
 
 }  // namespace viscera::volume

@@ -78,10 +78,7 @@ ClassificationTable RayCastEffect::table_of_texel(const TexelMap& stored_of_texe
 
 void RayCastEffect::make_table(const gl::Functions& gl, const TexelMap& stored_of_texel) {
     const ClassificationTable table = table_of_texel(stored_of_texel);
-    table_.emplace(gl::Texture::from_row(gl, std::as_bytes(std::span(table.entries)),
-                                         gl::texture_format(PixelFormat::rgba32f), "transfer function"));
-    table_place_ = table.place;
-    table_seen_ = static_cast<float>(table.first_seen()) - 1.0F;
+    table_.emplace(gl, table, EntriesShown::with_extinction);
     if (params_.sampling.scheme == Scheme::preintegrated && !projects()) {
         make_slabs(gl, stored_of_texel);
     }

@@ -146,10 +146,8 @@ void SliceEffect::make_table(const gl::Functions& gl, const TexelMap& stored_of_
     const TexelRange range{std::min(a, b), std::max(a, b)};
     const int entries = params_.transfer_function.entries;
     const ExtinctionKnots knots = extinction_knots(function, map, range);
-    ClassificationTable table = tabulate(knots, range, entries);
-    table_.emplace(gl::Texture::from_row(gl, std::as_bytes(std::span(table.entries)),
-                                         gl::texture_format(PixelFormat::rgba32f), "transfer function"));
-    table_place_ = table.place;
+    const ClassificationTable table = tabulate(knots, range, entries);
+    table_.emplace(gl, table, EntriesShown::all);
 }
 
 void SliceEffect::set_plane(const Pass& pass, const gl::Program& program) const {
@@ -192,9 +190,7 @@ void SliceEffect::draw(const Pass& pass) {
     pass.bind(program, "u_volume", gpu.texture(), params_.sampling.texture_filter(function_.nearest),
               space_.shape.wrap && !gpu.is_atlas() ? gl::Wrap::repeat : gl::Wrap::clamp);
     set_places(program, space_);
-    pass.bind(program, "u_transfer", *table_, gl::Filter::nearest);
-    program.set("u_transfer_seen", 0.0F);  // colours are shown whatever their opacity
-    program.set("u_transfer_place", glm::vec3(table_place_, table_->width() - 1));
+    table_->bind(pass, program);
     set_plane(pass, program);
     if (!in_camera()) {
         pass.draw_fullscreen();

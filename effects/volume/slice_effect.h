@@ -4,10 +4,10 @@
 #include <optional>
 #include <vector>
 
-#include "effects/volume/classification.h"
 #include "effects/volume/gpu_volume.h"
 #include "effects/volume/slice_params.h"
 #include "effects/volume/space.h"
+#include "effects/volume/transfer_texture.h"
 #include "engine/core/mesh_data.h"
 #include "engine/runtime/effect.h"
 
@@ -44,9 +44,8 @@ class SliceEffect final : public Effect {
     MeshData surface_;  ///< camera: in local coordinates
     Bounds bounds_;
     std::uint64_t surface_key_ = 0;
-    std::optional<gl::Texture> table_;
+    std::optional<TransferTexture> table_;
     std::uint64_t table_key_ = 0;
-    glm::dvec2 table_place_{0.0};
 };
 
 }  // namespace viscera::volume
