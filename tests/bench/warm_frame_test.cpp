@@ -44,6 +44,16 @@ class WarmFrameTest : public testing::TestWithParam<HostStatePolicy> {
             return pass.status == PassStatus::run || pass.status == PassStatus::reduced;
         }));
     }
+    /// Three frames to get warm, and three that draw so many passes and allocate nothing.
+    void expect_none_once_warm(double time_s, std::size_t passes, std::span<const HostVolume> volumes = {}) {
+        for (int i = 0; i < 3; ++i) {
+            (void)allocations(time_s += 0.01, volumes);
+        }
+        for (int i = 0; i < 3; ++i) {
+            EXPECT_EQ(allocations(time_s += 0.01, volumes), 0U) << "at " << time_s << " s";
+            EXPECT_EQ(drawn(), passes);
+        }
+    }
 
   private:
     std::unique_ptr<Context> context_;
@@ -97,14 +107,7 @@ TEST_P(WarmFrameTest, AMovedVolumeWithEverythingInItAllocatesNothing) {
                        "segments": [{"id": 3, "points": [{"value": 9, "opacity": 0.2}]}]},
             "overlay": {"host": "another volume that gives labels"},
             "clip_planes": [{"normal": [1, 2, 0.5]}, {"normal": [0, 1, 0], "point_mm": [0, -20, 0]}]}}]})");
-    double time_s = 1.5;
-    for (int i = 0; i < 3; ++i) {
-        (void)allocations(time_s += 0.01, given);
-    }
-    for (int i = 0; i < 3; ++i) {
-        EXPECT_EQ(allocations(time_s += 0.01, given), 0U) << "at " << time_s << " s";
-        EXPECT_EQ(drawn(), 1U);
-    }
+    expect_none_once_warm(1.5, 1U, given);
 }
 
 TEST_P(WarmFrameTest, MovedColoursInSegmentsAllocateNothing) {
@@ -123,14 +126,7 @@ TEST_P(WarmFrameTest, MovedColoursInSegmentsAllocateNothing) {
             "shading": {"enabled": true, "light_volume": {"ambient_occlusion": 0.5}},
             "labels": {"host": "labels", "segments": [{"id": 3, "opacity_factor": 0.5}]},
             "overlay": {"host": "labels"}}}]})");
-    double time_s = 1.5;
-    for (int i = 0; i < 3; ++i) {
-        (void)allocations(time_s += 0.01, given);
-    }
-    for (int i = 0; i < 3; ++i) {
-        EXPECT_EQ(allocations(time_s += 0.01, given), 0U) << "at " << time_s << " s";
-        EXPECT_EQ(drawn(), 1U);
-    }
+    expect_none_once_warm(1.5, 1U, given);
 }
 
 TEST_P(WarmFrameTest, AMovedOrganBehindAMembraneAllocatesNothing) {
@@ -149,14 +145,7 @@ TEST_P(WarmFrameTest, AMovedOrganBehindAMembraneAllocatesNothing) {
                                              {"/passes/2", membrane},
                                              {"/outputs", {"organ.color"}}};
     renderer().set_scene(load_scene(scenes / "organ.json", changes));
-    double time_s = 0.0;
-    for (int i = 0; i < 3; ++i) {
-        (void)allocations(time_s += 0.01);
-    }
-    for (int i = 0; i < 3; ++i) {
-        EXPECT_EQ(allocations(time_s += 0.01), 0U) << "at " << time_s << " s";
-        EXPECT_EQ(drawn(), 3U);
-    }
+    expect_none_once_warm(0.0, 3U);
 }
 
 TEST_P(WarmFrameTest, AnOrganThatBleedsWhileAHookMovesAllocatesNothing) {
@@ -185,14 +174,7 @@ TEST_P(WarmFrameTest, TwoEyesInMixedResolutionAllocateNothing) {
              "parameters": {"$ref": "#/shared/head", "mixed": {"pass": "coarse"}}},
             {"name": "fine", "effect": "volume.ray_cast",
              "parameters": {"$ref": "#/shared/head", "mixed": {"pass": "fine"}}}]})");
-    double time_s = 1.5;
-    for (int i = 0; i < 3; ++i) {
-        (void)allocations(time_s += 0.01, given);
-    }
-    for (int i = 0; i < 3; ++i) {
-        EXPECT_EQ(allocations(time_s += 0.01, given), 0U) << "at " << time_s << " s";
-        EXPECT_EQ(drawn(), 5U);
-    }
+    expect_none_once_warm(1.5, 5U, given);
 }
 
 INSTANTIATE_TEST_SUITE_P(HostState, WarmFrameTest,

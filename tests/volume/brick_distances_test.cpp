@@ -10,26 +10,11 @@
 #include <vector>
 
 #include "engine/core/error.h"
+#include "engine/core/pixel_index.h"
+#include "tests/volume/cells.h"
 
 namespace viscera::volume {
 namespace {
-
-std::size_t count_of(const glm::ivec3& dims) {
-    return static_cast<std::size_t>(dims.x) * static_cast<std::size_t>(dims.y) *
-           static_cast<std::size_t>(dims.z);
-}
-
-/// Calls act(number, index) for all bricks, x fastest.
-void for_each(const glm::ivec3& dims, const auto& act) {
-    std::size_t i = 0;
-    for (int z = 0; z < dims.z; ++z) {
-        for (int y = 0; y < dims.y; ++y) {
-            for (int x = 0; x < dims.x; ++x) {
-                act(i++, glm::ivec3(x, y, z));
-            }
-        }
-    }
-}
 
 /// Bricks of up to `count` kinds, most of them of kind 0 where `per_mille` is small.
 std::vector<std::uint8_t> random_kinds(const glm::ivec3& dims, unsigned per_mille, unsigned count,
@@ -124,9 +109,7 @@ TEST(DistanceToOthers, refuses_another_size) {
 /// The largest cube ahead of each brick that holds no other kind, tried brick by brick.
 int size_by_trial(const glm::ivec3& dims, const std::vector<std::uint8_t>& kinds, const glm::ivec3& from,
                   const glm::ivec3& up) {
-    const auto kind_at = [&](const glm::ivec3& b) {
-        return kinds[static_cast<std::size_t>(b.x + dims.x * (b.y + dims.y * b.z))];
-    };
+    const auto kind_at = [&](const glm::ivec3& b) { return kinds[voxel_index(b, dims)]; };
     int size = distance_reach;
     for_each(glm::ivec3(distance_reach), [&](std::size_t, const glm::ivec3& step) {
         const glm::ivec3 b = from + step * (2 * up - 1);
@@ -154,9 +137,8 @@ TEST(SizesAhead, are_those_of_the_cubes_tried_one_by_one) {
                                    random() % static_cast<unsigned>(dims.y),
                                    random() % static_cast<unsigned>(dims.z));
                 const glm::ivec3 t = b + up * dims;
-                const int texel =
-                    texels[static_cast<std::size_t>(t.x + 2 * dims.x * (t.y + 2 * dims.y * t.z))];
-                const int kind = kinds[static_cast<std::size_t>(b.x + dims.x * (b.y + dims.y * b.z))];
+                const int texel = texels[voxel_index(t, 2 * dims)];
+                const int kind = kinds[voxel_index(b, dims)];
                 ASSERT_EQ(texel / kind_step, kind);
                 ASSERT_EQ(texel % kind_step, size_by_trial(dims, kinds, b, up))
                     << dims.x << ' ' << dims.y << ' ' << dims.z << " at " << per_mille << ", brick " << b.x

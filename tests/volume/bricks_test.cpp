@@ -12,6 +12,7 @@
 #include <string>
 
 #include "engine/core/error.h"
+#include "tests/volume/cells.h"
 
 namespace viscera::volume {
 namespace {
@@ -42,11 +43,6 @@ Volume volume_of(const glm::ivec3& dims, const std::vector<T>& values, int chann
     return volume;
 }
 
-std::size_t count_of(const glm::ivec3& dims) {
-    return static_cast<std::size_t>(dims.x) * static_cast<std::size_t>(dims.y) *
-           static_cast<std::size_t>(dims.z);
-}
-
 /// The whole range of the type, so that a comparison in the wrong type shows.
 template <typename T>
 std::vector<T> random_values(std::size_t count, std::uint_fast32_t seed) {
@@ -62,17 +58,6 @@ std::vector<T> random_values(std::size_t count, std::uint_fast32_t seed) {
         }
     }
     return values;
-}
-
-void for_each(const glm::ivec3& dims, const auto& act) {
-    std::size_t i = 0;
-    for (int z = 0; z < dims.z; ++z) {
-        for (int y = 0; y < dims.y; ++y) {
-            for (int x = 0; x < dims.x; ++x) {
-                act(i++, glm::ivec3(x, y, z));
-            }
-        }
-    }
 }
 
 /// Voxel by voxel.
