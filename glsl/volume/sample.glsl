@@ -31,6 +31,18 @@ float sample_volume(vec3 place) {
 #if defined(GRADIENT_KEPT) && !defined(STORAGE_ATLAS)
 uniform sampler3D u_gradients;   // central differences at the voxels: effects/volume/gradients.h
 uniform vec3 u_gradient_scale;   // of a texel -> per texture coordinate
+
+// Beyond the outermost centres the values go on, so that one of the two that a difference is taken of stays behind: it
+// falls to half at the face. The texture's own edge would go on with all of it.
+vec3 share_of_difference(vec3 place) {
+    vec3 size = vec3(volume_size());
+    vec3 p = place * size;
+    vec3 beyond = clamp(max(0.5 - p, p - (size - 0.5)), 0.0, 1.0);
+#ifdef COORDINATES
+    beyond.ANGLE = u_ring ? 0.0 : beyond.ANGLE;
+#endif
+    return 1.0 - beyond;
+}
 #endif
 
 // Derivative of the value per texture coordinate: the filter's own, or the central difference of one voxel to either
@@ -38,7 +50,7 @@ uniform vec3 u_gradient_scale;   // of a texel -> per texture coordinate
 // looked up where they are kept (GRADIENT_KEPT).
 vec3 sample_gradient(vec3 place) {
 #if defined(GRADIENT_KEPT) && !defined(STORAGE_ATLAS)
-    return u_gradient_scale * textureLod(u_gradients, within_texture(place), 0.0).rgb;
+    return u_gradient_scale * share_of_difference(place) * textureLod(u_gradients, within_texture(place), 0.0).rgb;
 #elif defined(GRADIENT_CENTRAL)
     vec3 size = vec3(volume_size());
     vec3 x = vec3(1.0 / size.x, 0.0, 0.0);

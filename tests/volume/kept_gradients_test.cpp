@@ -81,6 +81,17 @@ TEST_F(KeptGradients, AreExactlyNothingInAConstantBody) {
     EXPECT_TRUE(same_bits(stage_.cast(step, p, look_), kept));
 }
 
+/// Half a voxel lies beyond the outermost centres, where one of the two values of a difference goes on alone.
+TEST_F(KeptGradients, AreCentralDifferencesUpToTheFaces) {
+    const LiveVolume noise(noise_volume({6, 7, 5}, glm::dvec3(30.0, 25.0, 40.0), 5));
+    nlohmann::json p = parameters("composite", "central");
+    p["transfer_function"]["points"] = {{{"value", 0}, {"opacity", 0.9}, {"colour", {0.9, 0.6, 0.5}}}};
+    p["shading"]["two_sided"] = true;
+    EXPECT_LE(off(noise, p), 1e-3) << "opaque from the faces on";
+    p["transfer_function"]["points"][0]["opacity"] = 0.01;
+    EXPECT_LE(off(noise, p), 5e-4);
+}
+
 TEST_F(KeptGradients, FollowALiveVolume) {
     LiveVolume head(head_volume(32, 240.0));
     const nlohmann::json p = parameters("composite", "precomputed");
