@@ -256,9 +256,8 @@ Json describe_volume(const std::filesystem::path& file, Log& log) {
         {".hdr", "convert it with oiiotool to .exr"}};
     std::string message =
         "cannot be described: meshes are read from .gltf, .glb, .stl, .obj, .ply and .vtp, centrelines from "
-        ".vtp "
-        "and .json, pictures from .exr, .png, .jpg, volumes from DICOM, .nii, .nrrd, .mha, .mhd, .vtk, .vti, "
-        ".csv, folders of slices, and .json beside a raw file";
+        ".vtp and .json, pictures from .exr, .png, .jpg, volumes from DICOM, .nii, .nrrd, .mha, .mhd, .vtk, "
+        ".vti, .csv, .plist (InVesalius), folders of slices, and .json beside a raw file";
     if (const auto found = advice.find(lower_extension(file)); found != advice.end()) {
         message += "; " + std::string(found->second);
     } else {
@@ -285,7 +284,7 @@ Json describe_geometry(const std::filesystem::path& file, Log& log) {
 
 }  // namespace
 
-Json describe(const std::filesystem::path& file) {
+Json describe(const std::filesystem::path& file, const LogCallback& tell) {
     constexpr std::array images{".exr", ".png", ".jpg", ".jpeg"};
     constexpr std::array geometry{".gltf", ".glb", ".stl", ".obj", ".ply", ".vtp", ".json"};
     const std::string extension = lower_extension(file);
@@ -294,22 +293,21 @@ Json describe(const std::filesystem::path& file) {
         throw Error(ErrorCode::file, file.string(), "does not exist");
     }
     Json result;
-    const auto add_faults = [&result](const Log& log) {
+    Log log(tell);
+    const auto add_faults = [&] {
         result["faults"] = Json::object();
         for (const auto& [key, count] : log.faults()) {
             result["faults"][key] = count;
         }
     };
     if (is_volume(file)) {
-        Log log;
         result = {{"kind", "volume"}, {"volume", describe_volume(file, log)}};
-        add_faults(log);
+        add_faults();
     } else if (std::ranges::find(images, extension) != images.end()) {
         result = {{"kind", "image"}, {"images", describe_images(file)}};
     } else if (std::ranges::find(geometry, extension) != geometry.end()) {
-        Log log;
         result = describe_geometry(file, log);
-        add_faults(log);
+        add_faults();
     } else {
         fail_unknown(file);
     }

@@ -197,6 +197,41 @@ std::optional<double> value_of(const NrrdHeader& header, std::string_view key, c
     return one_number(found->second, key, reading);
 }
 
+/// Length of a unit that a field names; none for one that is not known.
+std::optional<double> millimetres(std::string_view unit) {
+    static const std::map<std::string, double, std::less<>> units{
+        {"mm", 1.0},    {"millimeter", 1.0},  {"millimeters", 1.0}, {"millimetre", 1.0}, {"millimetres", 1.0},
+        {"cm", 10.0},   {"centimeter", 10.0}, {"centimetre", 10.0}, {"m", 1e3},          {"meter", 1e3},
+        {"metre", 1e3}, {"um", 1e-3},         {"micron", 1e-3},     {"microns", 1e-3},   {"micrometer", 1e-3},
+        {"nm", 1e-6},   {"nanometer", 1e-6},  {"micrometre", 1e-3}, {"\xC2\xB5m", 1e-3}};
+    const auto found = units.find(lower(unit));
+    return found == units.end() ? std::nullopt : std::optional(found->second);
+}
+
+/// ITK takes all lengths as mm, whatever unit the file gives them in. Axes of one volume have one unit.
+void apply_units(const NrrdHeader& header, VolumeGrid& grid, const Reading& reading) {
+    std::optional<double> mm;
+    const std::string_view field = header.get("space").empty() ? "units" : "spaceunits";
+    std::string_view rest = header.get(field);
+    for (std::size_t open = rest.find('"'); open != std::string_view::npos; open = rest.find('"')) {
+        rest.remove_prefix(open + 1);
+        const std::string_view unit = rest.substr(0, rest.find('"'));
+        rest.remove_prefix(std::min(rest.size(), unit.size() + 1));
+        const std::optional<double> length = millimetres(trim(unit));
+        if (trim(unit).empty()) {
+            continue;  // an axis without a unit, such as channels
+        }
+        if (!length || (mm && *mm != *length)) {
+            reading.log.warning(reading.file.string() + ": lengths in '" + printable(header.get(field)) +
+                                "' are taken as mm");
+            return;
+        }
+        mm = length;
+    }
+    grid.spacing_mm *= mm.value_or(1.0);
+    grid.origin_mm *= mm.value_or(1.0);
+}
+
 /// ITK 5.2 turns LAS over along x, where it is y that differs from LPS: half a turn about z sets it right.
 void half_turn(VolumeGrid& grid) {
     const glm::dvec3 turn(-1.0, -1.0, 1.0);
@@ -227,6 +262,7 @@ Volume read_nrrd(const Reading& reading) {
             space == "left-anterior-superior" || space == "las") {
             half_turn(head.volume.grid);
         }
+        apply_units(header, head.volume.grid, reading);
     } catch (const Error&) {
         throw;
     } catch (const std::exception& error) {

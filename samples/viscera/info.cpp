@@ -7,6 +7,7 @@
 
 #include "engine/io/file_info.h"
 #include "samples/viscera/commands.h"
+#include "samples/viscera/session.h"
 
 namespace viscera::app {
 
@@ -47,10 +48,10 @@ void add_info(CLI::App& app, int& exit_code) {
         ->add_option(
             "FILE", *file,
             "glTF, GLB, STL, OBJ, PLY, VTP, centreline JSON, EXR, PNG or JPEG; a volume: DICOM, NIfTI, "
-            "NRRD, MetaImage, VTK, VTI, CSV, JSON of a raw file, or a folder of slices")
+            "NRRD, MetaImage, VTK, VTI, CSV, InVesalius project, JSON of a raw file, or a folder of slices")
         ->required();
     command->callback([file, &exit_code] {
-        print(std::cout, io::describe(*file), "");
+        print(std::cout, io::describe(*file, stderr_log()), "");
         std::cout << '\n';
         exit_code = 0;
     });

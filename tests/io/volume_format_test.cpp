@@ -3,8 +3,10 @@
 #include <limits>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "engine/core/error.h"
+#include "engine/io/file_info.h"
 #include "engine/io/png.h"
 #include "engine/io/volume.h"
 #include "tests/io/temp_folder.h"
@@ -87,6 +89,36 @@ TEST_F(VolumeFormat, NrrdSpacesEndInLps) {
     const Volume las = load_bytes("a.nrrd", test::nrrd("uchar", "raw", voxels, "LAS"));
     EXPECT_EQ(las.grid.origin_mm, glm::dvec3(10.0, -20.0, 30.0));
     EXPECT_EQ(las.grid.direction, glm::dmat3({1, 0, 0}, {0, -1, 0}, {0, 0, 1}));
+}
+
+TEST_F(VolumeFormat, NrrdLengthsInOtherUnitsBecomeMillimetres) {
+    const std::string voxels = test::bytes_of(test::ramp<std::uint8_t>());
+    const auto with = [&](std::string_view units) {
+        return load_bytes("a.nrrd", test::nrrd("uchar", "raw", voxels, "left-posterior-superior",
+                                               "space units: " + std::string(units) + "\n"));
+    };
+    expect_ramp(with(R"("mm" "mm" "mm")"), ScalarType::u8);
+    EXPECT_TRUE(messages_.empty());
+    const Volume metres = with(R"("m" "m" "m")");
+    EXPECT_EQ(metres.grid.spacing_mm, glm::dvec3(500.0, 750.0, 2000.0));
+    EXPECT_EQ(metres.grid.origin_mm, glm::dvec3(1e4, 2e4, 3e4));
+    EXPECT_EQ(with(R"("Micron" "um" "um")").grid.spacing_mm, glm::dvec3(0.5, 0.75, 2.0) * 1e-3);
+    const Volume plain = load_bytes("b.nrrd",
+                                    "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 4 3 2\n"
+                                    "spacings: 1 2 3\nunits: \"cm\" \"cm\" \"cm\"\n"
+                                    "encoding: raw\n\n" +
+                                        voxels);
+    EXPECT_EQ(plain.grid.spacing_mm, glm::dvec3(10.0, 20.0, 30.0));
+    EXPECT_TRUE(messages_.empty());
+    expect_ramp(with(R"("furlong" "mm" "mm")"), ScalarType::u8);
+    expect_ramp(with(R"("m" "mm" "mm")"), ScalarType::u8);
+    ASSERT_EQ(messages_.size(), 2U);
+    EXPECT_NE(messages_[0].find("furlong"), std::string::npos) << messages_[0];
+    // A description of the file says so, too.
+    std::vector<std::string> told;
+    const auto tell = [&](LogLevel, std::string_view message) { told.emplace_back(message); };
+    EXPECT_EQ(describe(folder_ / "a.nrrd", tell)["kind"], "volume");
+    EXPECT_EQ(told, std::vector{messages_[1]});
 }
 
 TEST_F(VolumeFormat, NrrdDetachedSkippedAndWithKeys) {
