@@ -70,10 +70,8 @@ void RayCastEffect::draw(const Pass& pass) {
     const Volume& volume = source_->volume();
     const TexelMap& map = gpu.map();
     const auto texel = [&](double value) { return map.texel_of((value - volume.intercept) / volume.slope); };
-    const std::uint64_t table_key = Hash().add(parameters_key_).add(source_->version()).value();
-    if (table_key_ != table_key) {
+    if (!table_.is_of(parameters_key_, *source_)) {
         make_table(pass.gl(), map);
-        table_key_ = table_key;
     }
     variant_.compute = pass.compute("colour");
     const RayFrame frame = make_ray_frame(pass.frame().eye(), space_.local_to_world, space_.low, space_.high);
@@ -102,7 +100,7 @@ void RayCastEffect::draw(const Pass& pass) {
         volume::bind(params_.isosurface, TexelMap{volume.slope * map.scale, volume.value_of(map.offset)},
                      params_.sampling.termination, program);
     }
-    table_->bind(pass, program);
+    table_.bind(pass, program);
     if (slabs_) {
         slabs_->bind(pass, program);
     }

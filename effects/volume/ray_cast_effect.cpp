@@ -218,8 +218,7 @@ Work RayCastEffect::prepare(Prepare& prepare) {
         params_.sampling.fovea ? params_.sampling.fovea->centre_of(prepare.frame()) : glm::dvec2(0.0);
     const std::uint64_t key = Hash()
                                   .add(parameters_key_)
-                                  .add(source_->key)
-                                  .add(source_->version())
+                                  .add(source_->state_key())
                                   .add(lattice_.slab_mm)
                                   .add(fovea_centre_)
                                   .add(look_.key())

@@ -103,8 +103,7 @@ class RayCastEffect final : public Effect {
     std::shared_ptr<const gl::Texture> blue_noise_;
     MixedPlan plan_;
     std::optional<SlabTexture> slabs_;  ///< preintegrated only
-    std::optional<TransferTexture> table_;
-    std::uint64_t table_key_ = 0;
+    TransferTexture table_{EntriesShown::with_extinction};
 };
 
 }  // namespace viscera::volume

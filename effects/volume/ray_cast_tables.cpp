@@ -77,11 +77,11 @@ ClassificationTable RayCastEffect::table_of_texel(const TexelMap& stored_of_texe
 }
 
 void RayCastEffect::make_table(const gl::Functions& gl, const TexelMap& stored_of_texel) {
-    const ClassificationTable table = table_of_texel(stored_of_texel);
-    table_.emplace(gl, table, EntriesShown::with_extinction);
     if (params_.sampling.scheme == Scheme::preintegrated && !projects()) {
         make_slabs(gl, stored_of_texel);
     }
+    // Last: it says that all is made.
+    table_.make(gl, table_of_texel(stored_of_texel), parameters_key_, *source_);
 }
 
 /// The transfer function's and those of segments, in the order of the rows that labels name.

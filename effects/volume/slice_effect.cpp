@@ -106,8 +106,7 @@ Work SliceEffect::prepare(Prepare& prepare) {
         prepare.log().fault("volume.singular", "the volume's placement is singular; it is not drawn");
         return Work::idle("the volume's placement is singular");
     }
-    const std::uint64_t key =
-        Hash().add(surface_key_).add(parameters_key_).add(source_->key).add(source_->version()).value();
+    const std::uint64_t key = Hash().add(surface_key_).add(parameters_key_).add(source_->state_key()).value();
     if (!in_camera()) {
         return Work::all(key);
     }
@@ -146,8 +145,7 @@ void SliceEffect::make_table(const gl::Functions& gl, const TexelMap& stored_of_
     const TexelRange range{std::min(a, b), std::max(a, b)};
     const int entries = params_.transfer_function.entries;
     const ExtinctionKnots knots = extinction_knots(function, map, range);
-    const ClassificationTable table = tabulate(knots, range, entries);
-    table_.emplace(gl, table, EntriesShown::all);
+    table_.make(gl, tabulate(knots, range, entries), parameters_key_, *source_);
 }
 
 void SliceEffect::set_plane(const Pass& pass, const gl::Program& program) const {
@@ -179,10 +177,8 @@ void SliceEffect::draw(const Pass& pass) {
     GpuVolume& gpu =
         *load_gpu_volume(pass.assets(), pass.gl(), *sampled_, sampled_channel_, params_.volume.storage);
     gpu.update(*sampled_);
-    const std::uint64_t table_key = Hash().add(parameters_key_).add(source_->version()).value();
-    if (table_key_ != table_key) {
+    if (!table_.is_of(parameters_key_, *source_)) {
         make_table(pass.gl(), gpu.map());
-        table_key_ = table_key;
     }
     const auto variant = std::ranges::find(variants_, std::pair(space_.shape.kind, gpu.is_atlas()));
     const gl::Program& program = pass.use(static_cast<std::size_t>(variant - variants_.begin()));
@@ -190,7 +186,7 @@ void SliceEffect::draw(const Pass& pass) {
     pass.bind(program, "u_volume", gpu.texture(), params_.sampling.texture_filter(function_.nearest),
               space_.shape.wrap && !gpu.is_atlas() ? gl::Wrap::repeat : gl::Wrap::clamp);
     set_places(program, space_);
-    table_->bind(pass, program);
+    table_.bind(pass, program);
     set_plane(pass, program);
     if (!in_camera()) {
         pass.draw_fullscreen();

@@ -44,8 +44,7 @@ class SliceEffect final : public Effect {
     MeshData surface_;  ///< camera: in local coordinates
     Bounds bounds_;
     std::uint64_t surface_key_ = 0;
-    std::optional<TransferTexture> table_;
-    std::uint64_t table_key_ = 0;
+    TransferTexture table_{EntriesShown::all};
 };
 
 }  // namespace viscera::volume

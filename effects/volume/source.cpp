@@ -66,6 +66,10 @@ std::shared_ptr<const Source> live_source(Assets& assets, const LiveVolume& live
 
 }  // namespace
 
+std::uint64_t Source::state_key() const {
+    return Hash().add(key).add(version()).value();
+}
+
 void SourceParams::visit(ParamVisitor& v) {
     v.field({.name = "file", .doc = "Volume file, or folder of slices."}, file);
     v.field(

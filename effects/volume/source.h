@@ -39,6 +39,8 @@ struct Source {
 
     [[nodiscard]] const Volume& volume() const { return owned ? *owned : live->volume(); }
     [[nodiscard]] std::uint64_t version() const { return live == nullptr ? 1 : live->version(); }
+    /// Of the voxels as they are now.
+    [[nodiscard]] std::uint64_t state_key() const;
 };
 
 /// Reads the file on first use. Null when the host gives no volume of the name. Throws Error(file),
