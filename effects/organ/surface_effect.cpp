@@ -128,8 +128,8 @@ Work SurfaceEffect::prepare(Prepare& prepare) {
     }
     hint_share_ = hint_share(params_.hint, frame.time_s);
     const Variant variant = variant_of(prepare);
+    check_subjects(prepare);
     if (is_new || variant != variant_) {
-        check_subjects(prepare);
         variant_ = variant;
         name_features(variant);
     }

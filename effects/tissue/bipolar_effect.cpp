@@ -126,11 +126,11 @@ void BipolarEffect::find_surface(Prepare& prepare) {
     if (parameters_key_ != prepare.parameters_key()) {
         parameters_key_ = prepare.parameters_key();
         surface_ = BakedSurface::load(prepare.assets(), params_.mesh, prepare.size("energy").x);
-        surface_->check_bake(prepare, "tissue.coagulate_bipolar");
         map_ = surface_->map(prepare.assets());
         const SurfaceMesh& mesh = surface_->mesh();
         triangles_ = std::make_unique<HeldTriangles>(mesh.data(), mesh.places(), params_.max_uv_perimeter);
     }
+    surface_->check_bake(prepare, "tissue.coagulate_bipolar");
     surface_->move(prepare);
 }
 

@@ -139,18 +139,24 @@ TileTree* CoagulateEffect::find_tiles(Prepare& prepare) {
     }
     if (!surface_ || surface_->size() != size) {
         surface_ = BakedSurface::load(prepare.assets(), *params_.mesh, size);
-        surface_->check_bake(prepare, "tissue.coagulate");
     }
+    surface_->check_bake(prepare, "tissue.coagulate");
     surface_->move(prepare);
     return &surface_->tiles(prepare.assets());
 }
 
-void CoagulateEffect::find_limit(const HostValues* values) {
+void CoagulateEffect::find_limit(const HostValues* values, Log& log) {
     limit_ = {0.0F, 0.0F, 0.0F, static_cast<float>(no_limit * no_limit)};
     const HostValues::Entry* given = values == nullptr ? nullptr : values->find("tissue.limit_to");
-    if (given != nullptr && given->values.size() >= 4) {
+    if (given != nullptr && given->values.size() != 4) {
+        log.fault("tissue.limit_to",
+                  "host values 'tissue.limit_to' must be 4 numbers, a place and a radius; they are left out");
+        given = nullptr;
+    }
+    if (given != nullptr) {
         const std::vector<float>& f = given->values;
-        limit_ = {f[0], f[1], f[2], f[3] * f[3]};
+        // Nothing lies within a radius below 0.
+        limit_ = {f[0], f[1], f[2], f[3] * std::abs(f[3])};
     } else if (params_.limit_to) {
         limit_ = glm::vec4(glm::vec3(params_.limit_to->point_mm),
                            static_cast<float>(params_.limit_to->radius_mm * params_.limit_to->radius_mm));
@@ -181,6 +187,7 @@ Work CoagulateEffect::prepare(Prepare& prepare) {
     loads_ = !began_ && (prepare.has("last") || !params_.load.file.empty());
     if (loads_ && !params_.load.file.empty()) {
         saved = load_energy(prepare.assets(), params_.load, size);
+        goes_on_s_ = saved->time_s.value_or(no_time);
         if (!last_time_s_ && saved->time_s && *saved->time_s <= time) {
             last_time_s_ = saved->time_s;
         }
@@ -188,7 +195,7 @@ Work CoagulateEffect::prepare(Prepare& prepare) {
     contacts_.collect(params_.contacts, values_,
                       {.gain = params_.gain,
                        .max_speed = params_.metric == Metric::uv ? 1e30 : params_.max_speed_mm_s,
-                       .begin_s = last_time_s_.value_or(time),
+                       .begin_s = std::max(last_time_s_.value_or(time), goes_on_s_),
                        .end_s = time});
     if (contacts_.unusable() > 0) {
         prepare.log().fault(
@@ -196,16 +203,18 @@ Work CoagulateEffect::prepare(Prepare& prepare) {
             "contacts that are not finite, of an unknown action, or beyond 60,000 are left out",
             contacts_.unusable());
     }
-    find_limit(values_);
+    find_limit(values_, prepare.log());
     const bool there = params_.metric == Metric::uv || prepare.has("position");
     if (!loads_ && (contacts_.contacts().empty() || !there)) {
         const bool still = last_time_s_ && !(time > *last_time_s_);
+        const bool before = time < goes_on_s_;
         began_ = true;
         last_time_s_ = time;
         contacts_.keep_places(values_);
-        return Work::idle(!there  ? "there is no surface"
-                          : still ? "no time has passed"
-                                  : "nothing touches the tissue");
+        return Work::idle(!there   ? "there is no surface"
+                          : before ? "the loaded state is of a later time"
+                          : still  ? "no time has passed"
+                                   : "nothing touches the tissue");
     }
     if (!gpu_) {
         gpu_ = std::make_unique<Gpu>();

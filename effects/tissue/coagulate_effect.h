@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -51,13 +52,14 @@ class CoagulateEffect final : public Effect {
     void draw(const Pass& pass) override;
 
   private:
+    static constexpr double no_time = std::numeric_limits<double>::lowest();
     struct Gpu;
     [[nodiscard]] TileTree* find_tiles(Prepare& prepare);
     void find_region(TileTree& tiles, PixelRegion& region);
     void list_tiles(int side, const PixelRegion& region);
     void pack_contacts();
     void draw_tiles(const Pass& pass, std::size_t variant, std::size_t first, std::size_t end);
-    void find_limit(const HostValues* values);
+    void find_limit(const HostValues* values, Log& log);
 
     CoagulateParams params_;
     std::vector<ProgramDesc> programs_;
@@ -66,6 +68,7 @@ class CoagulateEffect final : public Effect {
     std::unique_ptr<TileTree> uv_tiles_;  ///< with metric uv, which needs no surface
 
     std::optional<double> last_time_s_;  ///< of the last frame that was drawn, or had nothing to draw
+    double goes_on_s_ = no_time;         ///< time of the loaded state: contacts act from there on
     bool began_ = false;                 ///< the state has been begun; false when it must be begun anew
     ContactList contacts_;
     // What draw() is to do.

@@ -32,30 +32,49 @@ std::optional<double> time_of(const io::ExrPart& part) {
     return time;
 }
 
+/// The picture that is an energy: of a file with several, the one that is named so.
+const io::ExrPart& energy_of(const std::vector<io::ExrPart>& parts, const std::string& file) {
+    const auto named = std::ranges::find(parts, "tissue.energy", &io::ExrPart::name);
+    if (named == parts.end() && parts.size() > 1) {
+        throw Error(ErrorCode::scene, file, "holds several pictures, and none is named 'tissue.energy'");
+    }
+    const io::ExrPart& part = named == parts.end() ? parts.front() : *named;
+    if (part.image.channels() != 1) {
+        throw Error(ErrorCode::scene, file,
+                    "'" + part.name + "' has " + std::to_string(part.image.channels()) +
+                        " channels; an energy has one");
+    }
+    return part;
+}
+
 }  // namespace
 
 void SavedEnergyParams::visit(ParamVisitor& v) {
     v.field({.name = "file", .doc = "EXR file of this target, as render --dump writes it; empty: none."},
             file);
-    v.field({.name = "time_s",
-             .doc = "Time of that frame, from which it goes on; by default as the file says.",
-             .unit = "s"},
-            time_s);
+    v.field(
+        {.name = "time_s",
+         .doc =
+             "Time of that frame, from which it goes on: what contacts did until then is in it; by default "
+             "as the file says.",
+         .unit = "s"},
+        time_s);
 }
 
 std::shared_ptr<const SavedEnergy> load_energy(Assets& assets, const SavedEnergyParams& params, int size) {
     const std::string name = params.file.path.string();
     const std::uint64_t key = Hash().add(name).add(params.time_s.value_or(-1.0)).add(size).value();
     return assets.shared<SavedEnergy>(key, [&] {
-        std::vector<io::ExrPart> parts = io::read_exr(params.file.path);
-        const Image& image = parts.front().image;
+        const std::vector<io::ExrPart> parts = io::read_exr(params.file.path);
+        const io::ExrPart& part = energy_of(parts, name);
+        const Image& image = part.image;
         if (image.width != size || image.height != size) {
             throw Error(ErrorCode::scene, name,
                         "is " + std::to_string(image.width) + " x " + std::to_string(image.height) +
                             " pixels, the state is " + std::to_string(size) + " x " + std::to_string(size));
         }
         auto saved = std::make_shared<SavedEnergy>();
-        saved->time_s = params.time_s ? params.time_s : time_of(parts.front());
+        saved->time_s = params.time_s ? params.time_s : time_of(part);
         saved->image = make_image(size, size, PixelFormat::r32f);
         std::uint64_t bad = 0;
         for (int y = 0; y < size; ++y) {

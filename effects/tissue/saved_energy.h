@@ -25,8 +25,9 @@ struct SavedEnergy {
     std::optional<double> time_s;  ///< of the frame that wrote it
 };
 
-/// The picture of an EXR file that `viscera render --dump` wrote, in one channel. What is not finite becomes
-/// 0, with a fault. Throws Error(file), Error(scene) for another size than `size` texels.
+/// The picture of an EXR file that `viscera render --dump` wrote; of a file with several, the one that is
+/// named `tissue.energy`. What is not finite becomes 0, with a fault. Throws Error(file), Error(scene) for
+/// another size than `size` texels, for more than one channel, and for several pictures without that name.
 [[nodiscard]] std::shared_ptr<const SavedEnergy> load_energy(Assets& assets, const SavedEnergyParams& params,
                                                              int size);
 

@@ -104,6 +104,37 @@ void drop_triangles(MeshData& mesh, std::string_view where, Log& log) {
     mesh.indices = std::move(kept);
 }
 
+/// Those of the same corners in the same order of winding: they would be drawn twice, and no edge of theirs
+/// would be one between two triangles.
+void drop_doubled(MeshData& mesh, std::string_view where, Log& log) {
+    using Triangle = std::array<std::uint32_t, 3>;
+    std::vector<std::pair<Triangle, std::size_t>> triangles;  // the smallest corner first, and which it is
+    triangles.reserve(mesh.triangle_count());
+    for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+        const auto corner = mesh.indices.begin() + static_cast<std::ptrdiff_t>(3 * t);
+        Triangle triangle{corner[0], corner[1], corner[2]};
+        std::ranges::rotate(triangle, std::ranges::min_element(triangle));
+        triangles.emplace_back(triangle, t);
+    }
+    std::ranges::sort(triangles);
+    std::vector<char> doubled(triangles.size(), 0);
+    for (std::size_t i = 1; i < triangles.size(); ++i) {
+        doubled[triangles[i].second] = triangles[i].first == triangles[i - 1].first ? 1 : 0;
+    }
+    const auto number = static_cast<std::size_t>(std::ranges::count(doubled, 1));
+    if (number == 0) {
+        return;
+    }
+    count(log, where, "triangles that are there twice dropped", number);
+    std::vector<std::uint32_t> kept;
+    for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
+        if (doubled[i / 3] == 0) {
+            kept.push_back(mesh.indices[i]);
+        }
+    }
+    mesh.indices = std::move(kept);
+}
+
 template <class T>
 void keep(std::vector<T>& values, const std::vector<std::uint32_t>& new_index, std::size_t left) {
     if (values.empty()) {
@@ -195,6 +226,7 @@ MeshData clean(RawMesh raw, double scale_mm_per_unit, std::string_view where, Lo
         weld(mesh);
     }
     drop_triangles(mesh, where, log);
+    drop_doubled(mesh, where, log);
     drop_unused_vertices(mesh);
     repair_attributes(mesh, where, log);
     complete_normals(mesh, where, log);

@@ -35,12 +35,14 @@ class ObjReader {
         }
     }
 
-    [[nodiscard]] std::vector<RawMesh> meshes(const std::string& default_name) const {
+    [[nodiscard]] std::vector<RawMesh> meshes(const std::filesystem::path& file, Log& log) const {
         std::vector<RawMesh> meshes;
         for (const Part& part : parts_) {
             if (!part.corners.empty()) {
-                meshes.push_back({mesh_of(part), "", false});
-                meshes.back().mesh.name = part.name.empty() ? default_name : part.name;
+                const std::string name = part.name.empty() ? file.stem().string() : part.name;
+                const std::string where = file.string() + ": mesh '" + name + "'";
+                meshes.push_back({mesh_of(part, where, log), "", false});
+                meshes.back().mesh.name = name;
             }
         }
         return meshes;
@@ -121,14 +123,29 @@ class ObjReader {
         }
     }
 
-    /// One vertex for each different corner. Texture coordinates and normals stay if every corner has them.
-    [[nodiscard]] MeshData mesh_of(const Part& part) const {
-        bool has_uvs = true;
-        bool has_normals = true;
+    /// Whether every corner has an entry in a list. What only some have is left out, and said. Corners
+    /// without a place do not count: their triangles are dropped.
+    [[nodiscard]] bool all_have(const Part& part, std::size_t k, std::size_t size, const char* what,
+                                const std::string& where, Log& log) const {
+        std::uint64_t with = 0;
+        std::uint64_t without = 0;
         for (const Corner& corner : part.corners) {
-            has_uvs = has_uvs && corner[1] < uvs_.size();
-            has_normals = has_normals && corner[2] < normals_.size();
+            if (corner[0] < positions_.size()) {
+                ++(corner[k] < size ? with : without);
+            }
         }
+        if (with > 0 && without > 0) {
+            const std::string left_out = std::string(what) + " left out that not all corners have";
+            log.fault("mesh: " + left_out,
+                      where + ": " + left_out + ": " + std::to_string(without) + " are without", without);
+        }
+        return without == 0;
+    }
+
+    /// One vertex for each different corner. Texture coordinates and normals stay if every corner has them.
+    [[nodiscard]] MeshData mesh_of(const Part& part, const std::string& where, Log& log) const {
+        const bool has_uvs = all_have(part, 1, uvs_.size(), "texture coordinates", where, log);
+        const bool has_normals = all_have(part, 2, normals_.size(), "normals", where, log);
         MeshData mesh;
         std::map<Corner, std::uint32_t> known;
         for (Corner corner : part.corners) {
@@ -185,7 +202,7 @@ std::vector<RawMesh> read_obj(const std::filesystem::path& file, Log& log) {
             log.fault("mesh: points and lines left out", file.string() + ": points or lines left out",
                       reader.points_and_lines());
         }
-        return reader.meshes(file.stem().string());
+        return reader.meshes(file, log);
     } catch (const std::runtime_error& error) {
         throw Error(ErrorCode::file, file.string(), std::string("is no readable OBJ file: ") + error.what());
     }

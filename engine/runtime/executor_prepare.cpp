@@ -19,6 +19,19 @@ glm::ivec2 target_size(const Plan& plan, const PlanPass& pass) {
     return {0, 0};
 }
 
+/// What only a frame shows of a scene's faults (a size, a picture that does not fit) is said by effects with
+/// their parameters; which pass it is, only the executor knows.
+Work prepare_work(Effect& effect, Prepare& view, const std::string& pass) {
+    try {
+        return effect.prepare(view);
+    } catch (const Error& error) {
+        if (error.code() != ErrorCode::scene) {
+            throw;
+        }
+        throw Error(error.code(), "pass '" + pass + "', " + error.where(), std::string(error.message()));
+    }
+}
+
 }  // namespace
 
 /// One pass's view of the frame while works are collected.
@@ -116,7 +129,7 @@ void Executor::prepare(FrameReport& report) {
         }
         const gl::CpuTimer timer;
         FramePrepare view(*this, frames_[state.frame], p);
-        state.work = state.effect->prepare(view);
+        state.work = prepare_work(*state.effect, view, pass.name);
         // An effect may ask for more than there is.
         const glm::ivec2 size = target_size(plan_, pass);
         state.work.region = state.work.region.confined(size.x, size.y);

@@ -81,6 +81,30 @@ TEST_F(Meshes, BadTrianglesAreCountedAndDropped) {
     EXPECT_EQ(faults.at("mesh: triangles with a vertex that is not finite dropped"), 1U);
 }
 
+/// Corners of the same winding in any order are one triangle; the other winding is its back, which stays.
+TEST_F(Meshes, TrianglesThatAreThereTwiceAreDropped) {
+    const std::string points = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\n";
+    const MeshData mesh = load("a.obj", points + "f 1 2 3\nf 2 4 3\nf 2 3 1\nf 3 1 2\nf 1 3 2\n").at(0);
+    EXPECT_EQ(mesh.indices, (std::vector<std::uint32_t>{0, 1, 2, 1, 3, 2, 0, 2, 1}));
+    EXPECT_EQ(log_.faults().at("mesh: triangles that are there twice dropped"), 2U);
+}
+
+TEST_F(Meshes, WhatOnlySomeCornersHaveIsLeftOutAndSaid) {
+    const std::string lists = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nvn 0 0 1\n";
+    const MeshData mesh = load("a.obj", lists + "f 1/1/1 2/2/1 3/3/1\nf 2//1 4//1 3/9/1\n").at(0);
+    EXPECT_TRUE(mesh.uvs.empty());
+    EXPECT_EQ(log_.faults().at("mesh: texture coordinates left out that not all corners have"), 3U);
+    EXPECT_FALSE(log_.faults().contains("mesh: normals left out that not all corners have"));
+}
+
+/// A triangle that is dropped takes nothing from the others.
+TEST_F(Meshes, ADroppedTriangleTakesNoCoordinatesAlong) {
+    const std::string lists = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\n";
+    const MeshData mesh = load("a.obj", lists + "f 1/1 2/2 3/3\nf 1/1 2/2 9/9\n").at(0);
+    EXPECT_EQ(mesh.triangle_count(), 1U);
+    EXPECT_EQ(mesh.uvs.size(), 3U);
+}
+
 TEST_F(Meshes, NothingLeftIsSaidAndReturned) {
     const std::vector<MeshData> meshes = load("a.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
     ASSERT_EQ(meshes.size(), 1U);

@@ -181,5 +181,24 @@ TEST_F(TissueTools, ABakeOfAnotherMesh) {
     expect_said_once("tissue.other_mesh", "of another mesh or atlas");
 }
 
+/// Also when the bake alone is given another mesh, while the passes that paint stay as they are.
+TEST_F(TissueTools, ABakeThatBecomesThatOfAnotherMesh) {
+    json scene{{"version", 1}, {"resolution", {16, 16}}, {"outputs", {"tissue.energy"}}};
+    scene["passes"] = passes({{"file", Plane().write("stress").string()}});
+    load(scene);
+    values_.set("tissue.contacts", std::vector<float>{20, 20, 0, 2, 5, 0});
+    const auto draw = [&](double time_s) {
+        Frame frame = renderer().still(time_s);
+        frame.values = &values_;
+        renderer().render(frame);
+    };
+    draw(0.0);
+    draw(0.25);
+    EXPECT_FALSE(renderer().log().faults().contains("tissue.other_mesh")) << said();
+    renderer().set_parameter("bake", "/mesh/file", Plane{.cells = 3}.write("stress3").string());
+    draw(0.5);
+    expect_said_once("tissue.other_mesh", "tissue.coagulate has");
+}
+
 }  // namespace
 }  // namespace viscera::test
