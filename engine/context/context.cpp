@@ -65,9 +65,9 @@ std::vector<Backend> parse_backends(std::string_view word) {
     }
     const auto* found = std::ranges::find(names, word, &std::pair<Backend, std::string_view>::second);
     if (found == names.end()) {
-        throw Error(ErrorCode::usage, "backend",
-                    "'" + std::string(word) +
-                        "' is none of auto, egl, egl-device, egl-surfaceless, osmesa, glfw, current");
+        throw Error(
+            ErrorCode::usage, "backend",
+            "'" + std::string(word) + "' is none of auto, egl, egl-device, egl-surfaceless, osmesa, glfw");
     }
     return {found->first};
 }

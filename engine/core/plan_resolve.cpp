@@ -15,6 +15,7 @@ class Resolver {
 
   private:
     void bind_pass(std::size_t pass);
+    void check_sizes();
     void check_ports();
     void check_pair(const GraphPort& first, const GraphPort& second);
     std::optional<std::size_t> bind_read(const GraphPort& port);
@@ -100,6 +101,24 @@ void Resolver::bind_pass(std::size_t index) {
         const GraphPort& port = pass.ports[i];
         if (makes_content(port.access) && made.insert(port.target).second) {
             planned.bindings[i].content = make_content(port);
+        }
+    }
+    check_sizes();
+}
+
+/// What a pass draws into at once is one framebuffer.
+void Resolver::check_sizes() {
+    const auto& bindings = plan_.passes[pass_].bindings;
+    const PlanContent* first = nullptr;
+    for (std::size_t i = 0; i < bindings.size(); ++i) {
+        if (!bindings[i].content || !makes_content(bindings[i].access)) {
+            continue;
+        }
+        const PlanContent& content = plan_.contents[*bindings[i].content];
+        first = first == nullptr ? &content : first;
+        if (content.width != first->width || content.height != first->height) {
+            fault(graph_.passes[pass_].ports[i],
+                  "differs in size from '" + first->target + "', which the pass draws into as well");
         }
     }
 }

@@ -111,14 +111,18 @@ void add_bench(CLI::App& app, int& exit_code) {
         ->check(CLI::Range(1, 100000));
     command->add_option("--assets", arguments->assets, "folder with scenes, meshes and pictures");
     command->add_option("--report", arguments->report, "writes every row as JSON");
-    command->add_option("--scene", arguments->scene, "times this scene's frames in place of the cases");
+    CLI::Option* const scene =
+        command->add_option("--scene", arguments->scene, "times this scene's frames in place of the cases");
     command
         ->add_option("--set", arguments->overrides,
                      "/json/pointer=value: changes --scene before it is read; may be given many times")
         ->take_all()
-        ->allow_extra_args(false);
-    command->add_option("--pixels", arguments->pixels,
-                        "writes the first output of --scene as float32, top row first");
+        ->allow_extra_args(false)
+        ->needs(scene);
+    command
+        ->add_option("--pixels", arguments->pixels,
+                     "writes the first output of --scene as float32, top row first")
+        ->needs(scene);
     command->add_flag("--list", arguments->list, "names the cases and stops");
     command->callback([arguments, &exit_code] { exit_code = bench(*arguments); });
 }

@@ -67,6 +67,21 @@ FrameRange parse_frames(const std::string& text) {
     return range;
 }
 
+/// With --dump all every target is there; what else is not dumped is not written as PNG either.
+void check_png(const std::vector<std::string>& png, const DumpRequest& dump,
+               const std::vector<std::string>& outputs) {
+    for (const std::string& name : png) {
+        const auto among = [&](const std::vector<std::string>& names) {
+            return std::ranges::any_of(
+                names, [&](const std::string& n) { return n == name || name.starts_with(n + "."); });
+        };
+        if (dump.kind != DumpRequest::Kind::all && !among(dump.names) &&
+            (dump.kind != DumpRequest::Kind::outputs || !among(outputs))) {
+            throw Error(ErrorCode::usage, "--png", "'" + name + "' is not dumped; --dump names it as well");
+        }
+    }
+}
+
 /// Renders the frames that what comes next builds upon, without reading anything back.
 void run_up(Renderer& renderer, double until_s) {
     const Scene& scene = renderer.scene();
@@ -150,6 +165,9 @@ int render(const RenderArguments& arguments) {
         throw Error(ErrorCode::usage, "--time",
                     "a sequence of --frames has its own times: frame / frames_per_second");
     }
+    if (arguments.time_s && !std::isfinite(*arguments.time_s)) {
+        throw Error(ErrorCode::usage, "--time", "must be a finite number of seconds");
+    }
     const FrameRange range = sequence ? parse_frames(arguments.frames) : FrameRange{};
     const DumpRequest dump = parse_dump(arguments.dump);
     const io::ExrCompression compression = parse_compression(arguments.compression);
@@ -176,6 +194,7 @@ int render(const RenderArguments& arguments) {
     document["scene_hash"] = renderer.scene().hash;
     nlohmann::json& frames = document["frames"] = nlohmann::json::array();
     std::vector<std::string> png = split(arguments.png);
+    check_png(png, dump, renderer.scene().outputs);
     png.insert(png.end(), renderer.scene().outputs.begin(), renderer.scene().outputs.end());
     for (std::size_t i = 0, count = png.size(); renderer.scene().camera.stereo && i < count; ++i) {
         png.push_back(eye_name(png[i], 0));

@@ -41,7 +41,7 @@ void ContextArguments::add_to(CLI::App& command) {
                        "auto, egl, egl-device, egl-surfaceless, osmesa or glfw; auto tries EGL devices, EGL "
                        "surfaceless, OSMesa");
     command.add_option("--egl-device", egl_device,
-                       "index among the EGL devices, as `viscera backends` lists them");
+                       "this one of the EGL devices that `viscera backends` lists, and no other");
     command.add_flag("--require-hardware", require_hardware, "refuse software renderers");
 }
 
@@ -50,7 +50,10 @@ std::unique_ptr<Context> ContextArguments::open(const ContextOptions& wanted) co
     options.egl_device = egl_device;
     options.require_hardware = require_hardware;
     std::vector<Refusal> refusals;
-    std::unique_ptr<Context> context = create_first_context(parse_backends(backend), options, refusals);
+    // Who names a device wants that one: other ways would draw on another.
+    const bool chosen = egl_device && (backend == "auto" || backend == "egl");
+    std::unique_ptr<Context> context =
+        create_first_context(parse_backends(chosen ? "egl-device" : backend), options, refusals);
     const LogCallback log = stderr_log();
     for (const Refusal& refusal : refusals) {
         log(LogLevel::info, std::string(to_string(refusal.backend)) + " refused: " + refusal.why);

@@ -25,12 +25,21 @@ TEST_F(Command, WrongCommandLinesAreUsageErrors) {
                                                       {"render", path("scene.json"), "--time", "soon"},
                                                       {"diff", "a", "b", "--max", "-1"},
                                                       {"diff", "a", "b", "--fraction", "2"},
+                                                      {"render", path("scene.json"), "--time", "nan"},
+                                                      {"render", path("scene.json"), "--png", "no.such"},
+                                                      {"bench", "--set", "/camera/kind=c_arm", "cached"},
                                                       {"backends", "extra"}};
     for (const auto& arguments : wrong) {
         const Ended ended = viscera(arguments);
         EXPECT_EQ(ended.code, 2) << testing::PrintToString(arguments) << ended.err;
         EXPECT_FALSE(ended.err.empty());
     }
+}
+
+TEST_F(Command, AWordThatIsNoCommandIsNamed) {
+    EXPECT_THAT(viscera({"rendr", path("scene.json")}).err,
+                HasSubstr("rendr: is no command; did you mean 'render'?"));
+    EXPECT_THAT(viscera({"frobnicate"}).err, HasSubstr("frobnicate: is no command"));
 }
 
 TEST_F(Command, HelpAndVersionAreNoErrors) {

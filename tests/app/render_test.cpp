@@ -185,6 +185,8 @@ TEST_F(Render, RefusedBackendsSayWhy) {
     expect_refused(viscera({"render", path("scene.json"), "-o", path("out"), "--egl-device", "99",
                             "--backend", "egl-device"}),
                    5, "99");
+    expect_refused(viscera({"render", path("scene.json"), "-o", path("out"), "--egl-device", "99"}), 5,
+                   "there is no EGL device 99");
     const Ended hardware = render({"--require-hardware"});
     expect_refused(hardware, 5, "hardware is required");
     EXPECT_THAT(files(), ElementsAre());

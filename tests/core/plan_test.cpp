@@ -248,12 +248,12 @@ const Broken broken[] = {
      }},
     {"pass 'show', port 'host.new', target 'host': the imported target is not writable",
      [](Graph& g) {
-         g.imported = {{"host", PixelFormat::r8, 8, 8, false}};
+         g.imported = {{"host", PixelFormat::r8, 64, 48, false}};
          g.passes[2].ports.push_back(write("host"));
      }},
     {"pass 'show', port 'host.new', target 'host': an imported target cannot be read and written in one pass",
      [](Graph& g) {
-         g.imported = {{"host", PixelFormat::r8, 8, 8, true}};
+         g.imported = {{"host", PixelFormat::r8, 64, 48, true}};
          g.passes[2].ports.push_back(read("host"));
          g.passes[2].ports.push_back(write("host"));
      }},
@@ -315,6 +315,12 @@ const Broken broken[] = {
      [](Graph& g) {
          g.passes[1].ports[1].passthrough = "base";
          g.targets[1].size.scale = 0.5;
+     }},
+    {"pass 'blur', port 'blur.rest', target 'rest': differs in size from 'blur', which the pass draws into "
+     "as well",
+     [](Graph& g) {
+         g.targets.push_back({.name = "rest", .size = {.scale = 0.5}});
+         g.passes[1].ports.push_back({.port = "blur.rest", .target = "rest", .access = Access::write});
      }},
     {"pass 'blend', port 'blur', target 'blur': what is written over may be a passthrough of 'base'",
      [](Graph& g) {

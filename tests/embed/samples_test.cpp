@@ -76,8 +76,10 @@ TEST_F(Samples, HostGlfwShowsItsOwnDrawingAndViscera) {
         GTEST_SKIP() << "no window tests: Xvfb is not there (Debian package xvfb)";
     }
     const auto file = folder_ / "glfw.png";
-    ASSERT_EQ(std::system(("DISPLAY=" + display + " " + in_quotes(program) + " " + in_quotes(scene) + " 2 " +
-                           in_quotes(file))
+    // Sanitizers call what X11 and the driver keep a leak, since GLFW unloads both and their places with
+    // them; no suppression names a library that is gone. The other host is looked at for leaks.
+    ASSERT_EQ(std::system(("ASAN_OPTIONS=detect_leaks=0 DISPLAY=" + display + " " + in_quotes(program) + " " +
+                           in_quotes(scene) + " 2 " + in_quotes(file))
                               .c_str()),
               0);
     expect_both_halves(file);
