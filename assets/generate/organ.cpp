@@ -35,6 +35,21 @@ nlohmann::ordered_json landmarks(const OrganField& field, const OrganPaint& pain
     return json;
 }
 
+/// Height of the organ's relief [mm].
+GrayImage relief_picture(const MeshData& organ, const OrganPaint& paint, int size) {
+    const ColourImage painted = paint_atlas(organ, size, [&](const PaintPoint& p) {
+        return glm::vec4(glm::vec3(static_cast<float>(paint.relief(p))), 1.0F);
+    });
+    GrayImage relief(size, size);
+    for (int y = 0; y < size; ++y) {
+        for (int x = 0; x < size; ++x) {
+            const auto from = static_cast<std::size_t>(size - 1 - y) * static_cast<std::size_t>(size);
+            relief.at(x, y) = painted.pixels[from + static_cast<std::size_t>(x)].r;
+        }
+    }
+    return relief;
+}
+
 }  // namespace
 
 void generate_organs(const std::filesystem::path& folder, std::uint64_t seed, int coarser) {
@@ -51,6 +66,8 @@ void generate_organs(const std::filesystem::path& folder, std::uint64_t seed, in
     picture("organ_normal.png", size, false, [&](const PaintPoint& p) { return paint.normal(p); });
     picture("organ_hint.png", size / 2, true, [&](const PaintPoint& p) { return paint.hint(p); });
     picture("organ_cut.png", size, true, [&](const PaintPoint& p) { return paint.cut(p); });
+
+    write_exr(relief_picture(organ, paint, size / 2), folder / "images" / "organ_relief.exr");
 
     write_glb(make_hook(), folder / "meshes" / "hook.glb");
     const MeshData abdomen = mesh_abdomen(seed, abdomen_cells);

@@ -52,6 +52,11 @@ class OrganPaint {
     /// Ends of that cut.
     [[nodiscard]] const std::array<glm::dvec3, 2>& cut_line() const { return cut_line_; }
 
+    /// Height of that relief [mm].
+    [[nodiscard]] double relief(const PaintPoint& point) const {
+        return relief(point.place, field_.tissue(point.place));
+    }
+
   private:
     [[nodiscard]] double relief(const glm::dvec3& place, const OrganTissue& tissue) const;
 

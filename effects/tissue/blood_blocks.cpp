@@ -245,7 +245,9 @@ void BloodBlocks::look(const Pass& pass, const BloodMedium& medium, const Blood&
     search.set("u_still", still_mm_s * medium.flow.z);
     search.set("u_rest", medium.flow.y);
     search.set("u_all", all);
-    search.set("u_run", steps_per_look * medium.flow.z * medium.flow.x * medium.strength);
+    // A relief pulls no more than gravity down a wall.
+    const float steepest = medium.relief_pull > 0.0F ? 2.0F : 1.0F;
+    search.set("u_run", steps_per_look * medium.flow.z * medium.flow.x * medium.strength * steepest);
     draw_into(pass, held_target_[1 - before], gl::overwrite_state);
     pass.draw_fullscreen();
     const gl::Program& scan = use(pass, BloodShader::scan);

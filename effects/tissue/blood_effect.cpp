@@ -65,6 +65,7 @@ std::vector<Port> BloodEffect::ports() const {
         read("gravity", "tissue.gravity", "Of tissue.gravity."),
         read("flow_right", "tissue.flow_right", "Of tissue.gravity."),
         read("flow_top", "tissue.flow_top", "Of tissue.gravity."),
+        read_relief(),
         read("energy", "tissue.energy", "Where tissue is coagulated, wounds do not bleed.", true),
         read("spill", "tissue.blood_spill", "Thickness [mm] of blood that lies there at the start.", true),
         {.name = "height",
@@ -120,12 +121,14 @@ Work BloodEffect::prepare(Prepare& prepare) {
     const Frame& frame = prepare.frame();
     mesh_->move(frame.values, params_.mesh.host_positions, prepare.log());
     gravity_ = gravity_of(params_.gravity, frame.values, prepare.log());
+    relief_pull_ = relief_pull(params_.gravity, prepare);
     surface_key_ = Hash()
                        .add(mesh_->shape_key())
                        .add(to_world_)
                        .add(gravity_.down)
                        .add(gravity_.strength)
                        .add(params_.gravity.spreading)
+                       .add(relief_pull_)
                        .add(params_.open_edges)
                        .value();
     collect_wounds(params_, frame.values, prepare.log(), wounds_);
@@ -221,6 +224,8 @@ void BloodEffect::set_medium() {
     medium_.down = glm::vec3(gravity_.down);
     medium_.strength = static_cast<float>(gravity_.strength);
     medium_.spreading = static_cast<float>(params_.gravity.spreading);
+    medium_.relief_pull = static_cast<float>(relief_pull_);
+    medium_.pinning = static_cast<float>(liquid.pinning_mm);
     medium_.open_edges = params_.open_edges;
     medium_.sealed_energy = static_cast<float>(params_.sealed_energy);
 }

@@ -56,6 +56,7 @@ class BloodEffect final : public Effect {
     std::shared_ptr<SurfaceMesh> mesh_;
     glm::dmat4 to_world_{1.0};
     Gravity gravity_;
+    double relief_pull_ = 0.0;
     std::uint64_t surface_key_ = 0;  ///< of the mesh as it lies now
     std::int64_t target_step_ = 0;
     std::uint64_t shown_version_ = 0;  ///< of the blood that this pass drew last

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "effects/tissue/blood_programs.h"
+#include "effects/tissue/gravity.h"
 #include "engine/gl/pixel_transfer.h"
 #include "engine/runtime/pass.h"
 
@@ -66,6 +67,7 @@ void BloodGpu::set_medium(const gl::Program& program, const BloodMedium& medium)
     program.set("u_strength", medium.strength);
     program.set("u_open", medium.open_edges);
     program.set("u_spreading", medium.spreading);
+    program.set("u_pinning", medium.pinning);
 }
 
 void BloodGpu::set_tools(const Pass& pass, const gl::Program& program, const BloodMedium& medium) const {
@@ -106,7 +108,11 @@ void BloodGpu::take_surface(const Pass& pass, const BloodMedium& medium, bool em
         blocks_.begin(pass, spill);
     }
     if (!seams_->empty()) {
-        const gl::Program& links = use(pass, BloodShader::link);
+        const bool relief = medium.relief_pull > 0.0F;
+        const gl::Program& links = use(pass, relief ? BloodShader::link_relief : BloodShader::link);
+        if (relief) {
+            bind_relief(pass, links, static_cast<double>(medium.relief_pull));
+        }
         bind(pass, links, "u_links", seams_->links.texture());
         pass.bind(links, "u_position", "position");
         pass.bind(links, "u_normal", "normal");

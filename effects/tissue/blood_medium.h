@@ -12,8 +12,10 @@ struct BloodMedium {
     glm::vec4 flow{0.0F};  ///< mobility [1/(mm s)], residual [mm], time step [s], drying [mm/s]
     glm::vec4 drop{0.0F};  ///< aspect, trail [mm], life [s], smallest volume [mm^3]
     glm::vec3 down{0.0F};
-    float strength = 0.0F;   ///< of gravity, in units of the standard one
-    float spreading = 0.0F;  ///< see GravityParams
+    float strength = 0.0F;     ///< of gravity, in units of the standard one
+    float spreading = 0.0F;    ///< see GravityParams
+    float relief_pull = 0.0F;  ///< the same; 0 without a relief
+    float pinning = 0.0F;      ///< see LiquidParams [mm]
     float sealed_energy = 1.0F;
     bool open_edges = true;
     std::vector<glm::vec4> tools;        ///< place [mm], radius [mm]

@@ -80,6 +80,12 @@ void LiquidParams::visit(ParamVisitor& v) {
              .min = 0.0,
              .max = 10.0},
             residual_mm);
+    v.field({.name = "pinning_mm",
+             .doc = "Height over the residual film from which on the edge of a film spreads over dry tissue.",
+             .unit = "mm",
+             .min = 0.0,
+             .max = 10.0},
+            pinning_mm);
     v.field({.name = "drying_mm_s",
              .doc = "Thickness that dries per time.",
              .unit = "mm/s",

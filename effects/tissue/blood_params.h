@@ -56,6 +56,7 @@ struct LiquidParams {
     double viscosity_mpa_s = 4.0;
     double density_kg_m3 = 1060.0;
     double residual_mm = 0.01;
+    double pinning_mm = 0.2;
     double drying_mm_s = 0.0;
     double drop_mm3 = 0.5;
     double drop_aspect = 0.35;
@@ -70,7 +71,7 @@ struct LiquidParams {
 };
 
 struct BloodLookParams {
-    glm::dvec3 extinction_per_mm{0.7, 7.0, 8.0};
+    glm::dvec3 extinction_per_mm{0.9, 24.0, 28.0};
     glm::dvec3 deep_colour{0.22, 0.008, 0.01};
     double covering_mm = 0.05;
     double bump = 1.0;

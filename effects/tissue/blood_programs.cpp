@@ -10,6 +10,7 @@ std::vector<ProgramDesc> blood_programs() {
     return {{whole, "tissue/blood_start.frag", {}},
             {whole, "tissue/blood_start.frag", {"SPILL"}},
             {whole, "tissue/blood_link.frag", {}},
+            {whole, "tissue/blood_link.frag", {"RELIEF"}},
             {tile, "tissue/blood_film.frag", {"STEP"}},
             {tile, "tissue/blood_film.frag", {"STEP", "SEAMS"}},
             {tile, "tissue/blood_film.frag", {"STEP", "TOOLS"}},

@@ -21,6 +21,7 @@ enum class BloodShader : std::size_t {
     start,
     start_spill,
     link,
+    link_relief,
     film,
     film_seams,
     film_tools,

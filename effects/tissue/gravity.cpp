@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "engine/core/log.h"
+#include "engine/runtime/pass.h"
 
 namespace viscera::tissue {
 
@@ -23,6 +24,13 @@ void GravityParams::visit(ParamVisitor& v) {
          .min = 0.0,
          .max = 1.0},
         spreading);
+    v.field({.name = "relief_pull",
+             .doc = "Share of gravity with which hollows of the relief draw blood in, whichever way the "
+                    "surface faces: stands for surface tension, which does so with (14.5 mm / width from "
+                    "hollow to hollow)^2.",
+             .min = 0.0,
+             .max = 100.0},
+            relief_pull);
 }
 
 Gravity gravity_of(const GravityParams& params, const HostValues* values, Log& log) {
@@ -43,6 +51,25 @@ Gravity gravity_of(const GravityParams& params, const HostValues* values, Log& l
         return {};
     }
     return {gravity / length, length / standard_gravity_m_s2};
+}
+
+Port read_relief() {
+    return {.name = "relief",
+            .access = Access::read,
+            .target = "tissue.relief",
+            .doc =
+                "Height [mm] over the mesh, in texture space, of what is too fine for it: blood gathers in "
+                "its hollows.",
+            .optional = true};
+}
+
+double relief_pull(const GravityParams& params, const Prepare& prepare) {
+    return prepare.has("relief") ? params.relief_pull : 0.0;
+}
+
+void bind_relief(const Pass& pass, const gl::Program& program, double pull) {
+    pass.bind(program, "u_relief", "relief", gl::Filter::linear);
+    program.set("u_relief_pull", static_cast<float>(pull));
 }
 
 }  // namespace viscera::tissue

@@ -5,11 +5,14 @@
 #include <glm/glm.hpp>
 
 #include "engine/core/params.h"
+#include "engine/gl/program.h"
+#include "engine/runtime/effect.h"
 #include "engine/runtime/frame.h"
 
 namespace viscera {
 class Log;
-}
+class Pass;
+}  // namespace viscera
 
 namespace viscera::tissue {
 
@@ -20,6 +23,7 @@ struct GravityParams {
     glm::dvec3 gravity_m_s2{0.0, standard_gravity_m_s2, 0.0};
     std::string host_gravity = "tissue.gravity";
     double spreading = 0.15;
+    double relief_pull = 16.0;
 
     void visit(ParamVisitor& v);
 };
@@ -35,5 +39,11 @@ struct Gravity {
 /// The host's gravity (3 floats [m/s^2]) where it gives one, else the scene's. What is not finite or has
 /// another number of entries is a fault, and the scene's counts.
 [[nodiscard]] Gravity gravity_of(const GravityParams& params, const HostValues* values, Log& log);
+
+/// The port that reads the relief.
+[[nodiscard]] Port read_relief();
+/// Its pull where a pass has one, else 0.
+[[nodiscard]] double relief_pull(const GravityParams& params, const Prepare& prepare);
+void bind_relief(const Pass& pass, const gl::Program& program, double pull);
 
 }  // namespace viscera::tissue

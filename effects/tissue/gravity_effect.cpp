@@ -14,7 +14,9 @@ void GravityMapParams::visit(ParamVisitor& v) {
             open_edges);
 }
 
-GravityEffect::GravityEffect() : programs_{{"common/fullscreen.vert", "tissue/gravity.frag", {}}} {}
+GravityEffect::GravityEffect()
+    : programs_{{"common/fullscreen.vert", "tissue/gravity.frag", {}},
+                {"common/fullscreen.vert", "tissue/gravity.frag", {"RELIEF"}}} {}
 
 std::vector<Port> GravityEffect::ports() const {
     const SizeRule size = square(params_.size);
@@ -33,6 +35,7 @@ std::vector<Port> GravityEffect::ports() const {
         read_bake("normal"),
         read_bake("metric"),
         read_bake("seam"),
+        read_relief(),
         write("gravity", "tissue.gravity",
               "Direction downhill in UV, share of gravity along the surface, UV per mm that way.", false),
         write("flow_right", "tissue.flow_right",
@@ -48,11 +51,15 @@ Work GravityEffect::prepare(Prepare& prepare) {
     }
     check_size(prepare, "gravity");
     gravity_ = gravity_of(params_.gravity, prepare.frame().values, prepare.log());
+    relief_pull_ = relief_pull(params_.gravity, prepare);
     return Work::all(Hash().add(prepare.parameters_key()).add(gravity_.down).add(gravity_.strength).value());
 }
 
 void GravityEffect::draw(const Pass& pass) {
-    const gl::Program& program = pass.use(0);
+    const gl::Program& program = pass.use(relief_pull_ > 0.0 ? 1 : 0);
+    if (relief_pull_ > 0.0) {
+        bind_relief(pass, program, relief_pull_);
+    }
     pass.bind(program, "u_position", "position");
     pass.bind(program, "u_normal", "normal");
     pass.bind(program, "u_metric", "metric");

@@ -16,7 +16,7 @@ struct GravityMapParams {
 };
 
 /// Which way things run down a surface, texel by texel, and what drives a film of liquid from each texel to
-/// the next. Depends on the surface and on gravity alone.
+/// the next. Depends on the surface, its relief and gravity alone.
 class GravityEffect final : public Effect {
   public:
     GravityEffect();
@@ -31,6 +31,7 @@ class GravityEffect final : public Effect {
     GravityMapParams params_;
     std::vector<ProgramDesc> programs_;
     Gravity gravity_;
+    double relief_pull_ = 0.0;
 };
 
 }  // namespace viscera::tissue

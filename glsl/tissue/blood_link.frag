@@ -11,7 +11,8 @@ uniform sampler2D u_gravity;
 uniform vec3 u_down;
 uniform float u_strength;
 uniform float u_spreading;
-
+#include "tissue/downhill.glsl"
+#include "tissue/relief.glsl"
 layout(location = 0) out vec4 o_link;  // see blood_part.glsl
 
 ivec2 last;
@@ -22,6 +23,16 @@ vec3 position(ivec2 at) {
 
 bool joined(ivec2 at) {
     return texelFetch(u_film, clamp(at, ivec2(0), last), 0).w != 0.0;
+}
+
+/// As in gravity.frag.
+vec4 step_along(ivec2 at, ivec2 axis) {
+    bool before = joined(at - axis);
+    bool after = joined(at + axis);
+    ivec2 low = before ? at - axis : at;
+    ivec2 high = after ? at + axis : at;
+    vec3 way = position(high) - position(low);
+    return vec4(way, relief_rise(low, high, way)) * (before && after ? 0.5 : 1.0);
 }
 
 void main() {
@@ -45,15 +56,20 @@ void main() {
     float conductance = (side < 2 ? ratio : 1.0 / ratio) / sine;
     float skew = -metric.z / sine * float(axis.x + axis.y);
     vec3 here = position(from);
-    bool before = joined(from - along);
-    bool after = joined(from + along);
-    vec3 across = ((after ? position(from + along) : here) - (before ? position(from - along) : here)) * (before && after ? 0.5 : 1.0);
+    vec4 across = step_along(from, along);
+    vec3 over = position(from + axis) - here;
     float n = 0.5 * (max(-dot(u_down, texelFetch(u_normal, from, 0).xyz), u_spreading) +
                      max(-dot(u_down, texelFetch(u_normal, to, 0).xyz), u_spreading));
-    float drive = conductance * dot(u_down, position(from + axis) - here) + skew * dot(u_down, across);
+    float drive = conductance * (dot(u_down, over) - relief_rise(from, from + axis, over)) + skew * (dot(u_down, across.xyz) - across.w);
     float area = min(texelFetch(u_film, from, 0).w, texelFetch(u_film, to, 0).w);
     // As between neighbours (gravity.frag).
+#ifdef RELIEF
+    float factor;
+    float scale;
+    vec2 flow = abs(flow_downhill(u_down, step_along(from, ivec2(1, 0)).xyz, step_along(from, ivec2(0, 1)).xyz, vec2(0.0), factor, scale));
+#else
     vec2 flow = abs(texelFetch(u_gravity, from, 0).xy);
+#endif
     float sum = flow.x + flow.y;
     float share = sum > 0.0 ? 0.4 + 2.4 * (side < 2 ? flow.x : flow.y) / sum : 1.0;
     // Seen from the other side everything is the same but the sign.

@@ -12,6 +12,9 @@ layout(location = 0) out vec4 o_gravity;  // direction in UV, |tangential| / |gr
 layout(location = 1) out vec4 o_right;    // face to the right: spread, skew, drive [mm], share of area [mm^2]; in gutters see main()
 layout(location = 2) out vec4 o_top;      // face to the top
 
+#include "tissue/downhill.glsl"
+#include "tissue/relief.glsl"
+
 // What a texel is: 2 surface, 1 gutter that continues it, 0 nothing.
 const float surface = 2.0;
 const float continued = 1.0;
@@ -35,14 +38,14 @@ vec3 position(ivec2 at) {
     return texelFetch(u_position, clamp(at, ivec2(0), last), 0).xyz;
 }
 
-/// Change of position per texel along an axis: central, one-sided at borders.
-vec3 step_along(ivec2 at, ivec2 axis) {
+/// Change of position per texel along an axis, and w: what the relief adds to the rise: central, one-sided at borders.
+vec4 step_along(ivec2 at, ivec2 axis) {
     bool before = kind(at - axis) > 0.0;
     bool after = kind(at + axis) > 0.0;
-    vec3 here = position(at);
-    vec3 low = before ? position(at - axis) : here;
-    vec3 high = after ? position(at + axis) : here;
-    return (before && after ? 0.5 : 1.0) * (high - low);
+    ivec2 low = before ? at - axis : at;
+    ivec2 high = after ? at + axis : at;
+    vec3 way = position(high) - position(low);
+    return (before && after ? 0.5 : 1.0) * vec4(way, relief_rise(low, high, way));
 }
 
 struct Local {
@@ -67,38 +70,19 @@ float height(ivec2 at, vec3 origin) {
     return -dot(u_down, position(at) - origin);
 }
 
-/// The flow downhill at a texel: texels per unit of tangential length, up to a scale; 0 where the surface has no such direction.
-/// factor: |tangential| / |gravity|; scale: of the lengths in which the flow is measured.
-vec2 downhill(ivec2 at, out float factor, out float scale) {
-    vec3 du = step_along(at, ivec2(1, 0));
-    vec3 dv = step_along(at, ivec2(0, 1));
-    float longest = max(dot(du, du), dot(dv, dv));
-    factor = 0.0;
-    scale = 0.0;
-    if (!(longest > 0.0 && longest < 1e30)) {
-        return vec2(0.0);
-    }
-    // In units of the longer step, so that neither small nor large surfaces leave the range of a float.
-    scale = inversesqrt(longest);
-    du *= scale;
-    dv *= scale;
-    float uu = dot(du, du);
-    float uv = dot(du, dv);
-    float vv = dot(dv, dv);
-    float det = uu * vv - uv * uv;
-    vec2 pull = vec2(dot(u_down, du), dot(u_down, dv));
-    vec2 flow = vec2(vv * pull.x - uv * pull.y, uu * pull.y - uv * pull.x) / max(det, 1e-12);
-    factor = sqrt(max(dot(flow, pull), 0.0));
-    // Straight along gravity a surface has no direction downhill: what is left is rounding.
-    return det > 1e-9 && factor > 1e-4 ? flow : vec2(0.0);
+/// The flow downhill at a texel (downhill.glsl).
+vec2 downhill(ivec2 at, bool with_relief, out float factor, out float scale) {
+    vec4 du = step_along(at, ivec2(1, 0));
+    vec4 dv = step_along(at, ivec2(0, 1));
+    return flow_downhill(u_down, du.xyz, dv.xyz, with_relief ? vec2(du.w, dv.w) : vec2(0.0), factor, scale);
 }
 
 /// How much of what a cell holds may leave it in one step through a face, times 4: most of it downhill, and never more than all of it
-/// through its four faces together.
+/// through its four faces together. The relief has no say: over it pools level in any direction.
 float share(ivec2 cell, ivec2 axis) {
     float factor;
     float scale;
-    vec2 flow = abs(downhill(cell, factor, scale));
+    vec2 flow = abs(downhill(cell, false, factor, scale));
     float sum = flow.x + flow.y;
     return sum > 0.0 ? 0.4 + 2.4 * dot(flow, vec2(axis)) / sum : 1.0;
 }
@@ -114,8 +98,9 @@ vec4 face(ivec2 a, ivec2 axis, float kind_a, vec3 origin) {
         Local lb = local(b);
         float conductance = 0.5 * dot(la.conductance + lb.conductance, vec2(axis));
         float skew = 0.5 * (la.skew + lb.skew);
-        float across = -0.5 * dot(u_down, step_along(a, along) + step_along(b, along));
-        float rise = height(b, origin) - height(a, origin);
+        vec4 beside = step_along(a, along) + step_along(b, along);
+        float across = -0.5 * (dot(u_down, beside.xyz) - beside.w);
+        float rise = height(b, origin) - height(a, origin) + relief_rise(a, b, position(b) - position(a));
         float n = 0.5 * (upward(a) + upward(b));
         float drive = -(conductance * rise + skew * across);
         return vec4(u_strength * vec3(conductance * n, skew * n, drive),
@@ -129,7 +114,7 @@ vec4 face(ivec2 a, ivec2 axis, float kind_a, vec3 origin) {
     ivec2 cell = from_a ? a : b;
     float factor;
     float scale;
-    vec2 flow = downhill(cell, factor, scale);
+    vec2 flow = downhill(cell, false, factor, scale);
     vec2 outward = vec2(0.0);
     for (int i = 0; i < 9; ++i) {
         ivec2 way = ivec2(i % 3 - 1, i / 3 - 1);
@@ -139,7 +124,8 @@ vec4 face(ivec2 a, ivec2 axis, float kind_a, vec3 origin) {
         return vec4(0.0);
     }
     Local l = local(cell);
-    float drive = dot(u_down, dot(l.conductance, vec2(axis)) * step_along(cell, axis) + l.skew * step_along(cell, along));
+    vec4 way = dot(l.conductance, vec2(axis)) * step_along(cell, axis) + l.skew * step_along(cell, along);
+    float drive = dot(u_down, way.xyz) - way.w;
     return from_a == (drive > 0.0) ? vec4(0.0, 0.0, u_strength * drive, share(cell, axis) * texelFetch(u_metric, cell, 0).w)
                                       : vec4(0.0);
 }
@@ -186,7 +172,7 @@ void main() {
     if (here > 0.0) {
         float factor;
         float scale;
-        vec2 direction = downhill(at, factor, scale) / vec2(last + 1);
+        vec2 direction = downhill(at, true, factor, scale) / vec2(last + 1);
         float size = length(direction);
         if (size > 0.0) {
             o_gravity = vec4(direction / size, min(factor, 1.0), size / factor * scale);

@@ -50,7 +50,29 @@ struct Builder {
     }
     double z(std::size_t i) const { return height[i]; }
 
-    /// Direction downhill in texels, up to a scale.
+    /// What the relief adds to a rise, times the strength of gravity: no more than up a wall.
+    double relief_rise(std::size_t from, std::size_t to) const {
+        if (s.lift.empty()) {
+            return 0.0;
+        }
+        const double steepest = glm::length(s.position[to] - s.position[from]);
+        return glm::length(gravity) * std::clamp(s.lift[to] - s.lift[from], -steepest, steepest);
+    }
+    /// The same per texel along an axis: central, one-sided at borders.
+    double relief_slope(int x, int y, int dx, int dy) const {
+        const bool before = joined(s.at(x - dx, y - dy));
+        const bool after = joined(s.at(x + dx, y + dy));
+        const std::size_t here = s.index(x, y);
+        const double rise =
+            relief_rise(before ? s.index(x - dx, y - dy) : here, after ? s.index(x + dx, y + dy) : here);
+        return before && after ? 0.5 * rise : rise;
+    }
+    double rise(std::size_t from, std::size_t to) const { return z(to) - z(from) + relief_rise(from, to); }
+    double slope_of_rise(int x, int y, int dx, int dy) const {
+        return slope(s, x, y, dx, dy, [this](std::size_t i) { return z(i); }) + relief_slope(x, y, dx, dy);
+    }
+
+    /// Direction downhill in texels, up to a scale, without the relief.
     glm::dvec2 downhill(int x, int y) const {
         glm::dvec3 du;
         glm::dvec3 dv;
@@ -78,7 +100,6 @@ struct Builder {
     FlowFace face(int x, int y, int dx, int dy) const {
         const Texel a = s.at(x, y);
         const Texel b = s.at(x + dx, y + dy);
-        const auto zed = [this](std::size_t i) { return z(i); };
         if (a == Texel::cell && b == Texel::cell) {
             const std::size_t i = s.index(x, y);
             const std::size_t j = s.index(x + dx, y + dy);
@@ -86,9 +107,9 @@ struct Builder {
             const Local lb = local(s.metric[j]);
             const double c = 0.5 * (dx == 1 ? la.conductance + lb.conductance : la.inverse + lb.inverse);
             const double k = 0.5 * (la.skew + lb.skew);
-            const double across = 0.5 * (slope(s, x, y, dy, dx, zed) + slope(s, x + dx, y + dy, dy, dx, zed));
+            const double across = 0.5 * (slope_of_rise(x, y, dy, dx) + slope_of_rise(x + dx, y + dy, dy, dx));
             const double n = 0.5 * (up[i] + up[j]);
-            const double drive = -(c * (z(j) - z(i)) + k * across);
+            const double drive = -(c * rise(i, j) + k * across);
             const double portion = drive > 0.0 ? share(x, y, dx) : share(x + dx, y + dy, dx);
             return {c * n, k * n, drive, portion * std::min(s.metric[i].w, s.metric[j].w)};
         }
@@ -112,8 +133,8 @@ struct Builder {
             return {};
         }
         const Local l = local(s.metric[i]);
-        const double drive = -((dx == 1 ? l.conductance : l.inverse) * slope(s, cx, cy, dx, dy, zed) +
-                               l.skew * slope(s, cx, cy, dy, dx, zed));
+        const double drive = -((dx == 1 ? l.conductance : l.inverse) * slope_of_rise(cx, cy, dx, dy) +
+                               l.skew * slope_of_rise(cx, cy, dy, dx));
         const bool outward = (a == Texel::cell) == (drive > 0.0);
         return outward ? FlowFace{0.0, 0.0, drive, share(cx, cy, dx) * s.metric[i].w} : FlowFace{};
     }
@@ -144,13 +165,12 @@ struct Builder {
         const Local l = local(s.metric[i]);
         const double c = dx != 0 ? l.conductance : l.inverse;
         const double sign = dx + dy;
-        const double across =
-            slope(s, x, y, std::abs(dy), std::abs(dx), [this](std::size_t j) { return z(j); });
+        const double across = slope_of_rise(x, y, std::abs(dy), std::abs(dx));
         for (std::size_t n = 0; n < 4; ++n) {
             if (weight[n] > 0.0) {
                 const double part = 0.5 * weight[n] / sum;
                 links.push_back({i, to[n], part * c * 0.5 * (up[i] + up[to[n]]),
-                                 -part * (c * (z(g) - z(i)) + sign * l.skew * across),
+                                 -part * (c * rise(i, g) + sign * l.skew * across),
                                  part * share(x, y, dx) * std::min(s.metric[i].w, s.metric[to[n]].w)});
             }
         }
@@ -160,7 +180,8 @@ struct Builder {
 /// Volume that goes from a to b in a step [mm^3], negative the other way.
 double exchange(double drive, double spread, double area, double a, double b, const FilmParams& p,
                 double dt) {
-    const double moving = std::max((drive > 0.0 ? a : b) - p.residual_mm, 0.0);
+    const double pinned = std::max(p.pinning_mm - 4.0 * (drive > 0.0 ? b : a), 0.0);
+    const double moving = std::max((drive > 0.0 ? a : b) - p.residual_mm - pinned, 0.0);
     const double pull = dt * p.mobility_per_mm_s * std::abs(drive) / 3.0;
     const double most = 0.25 * area;
     // From the height at which the derivative is `most` on, the tangent.

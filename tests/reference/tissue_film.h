@@ -18,6 +18,7 @@ struct TissueSurface {
     std::vector<glm::dvec3> normal;    ///< unit
     std::vector<glm::dvec4> metric;    ///< mm per texel in u, in v, cosine between them, mm^2
     std::vector<glm::dvec2> seam;      ///< UV where the surface goes on
+    std::vector<double> lift;          ///< of the relief, times its pull [mm]; empty: flat
 
     [[nodiscard]] std::size_t index(int x, int y) const {
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
@@ -60,6 +61,7 @@ struct Flow {
 struct FilmParams {
     double mobility_per_mm_s = 2600.0;  ///< density times standard gravity over viscosity [1/(mm s)]
     double residual_mm = 0.0;           ///< what stays behind
+    double pinning_mm = 0.0;            ///< over that, from which on dry cells are wetted
     double drying_mm_s = 0.0;
 };
 

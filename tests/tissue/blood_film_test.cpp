@@ -18,6 +18,7 @@ constexpr double mobility = 2600.0;  // [1/(mm s)]
 json plain_liquid(double steps_per_s) {
     return {{"viscosity_mpa_s", 1060.0 * 9.80665 / mobility},
             {"residual_mm", 0.0},
+            {"pinning_mm", 0.0},
             {"trail_mm", 0.0},
             {"steps_per_s", steps_per_s}};
 }

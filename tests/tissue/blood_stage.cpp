@@ -53,13 +53,17 @@ json BloodStage::scene() const {
     json blood_parameters = blood;
     blood_parameters.update(gravity_parameters);
     blood_parameters["mesh"] = mesh;
-    json passes = json::array({pass("bake", "tissue.bake", {{"mesh", mesh}, {"size", size}}),
-                               pass("gravity", "tissue.gravity", gravity_parameters)});
-    if (!spill_file_.empty()) {
-        passes.push_back(pass("spill", "picture.image",
-                              {{"file", spill_file_}, {"fit", "stretch"}, {"monochrome", true}},
-                              {{"image", "tissue.blood_spill"}}));
-    }
+    json passes = json::array({pass("bake", "tissue.bake", {{"mesh", mesh}, {"size", size}})});
+    const auto add_picture = [&](const char* name, const std::string& file, const std::string& target) {
+        if (!file.empty()) {
+            passes.push_back(pass(name, "picture.image",
+                                  {{"file", file}, {"fit", "stretch"}, {"monochrome", true}},
+                                  {{"image", target}}));
+        }
+    };
+    add_picture("relief", relief_file_, "tissue.relief");
+    passes.push_back(pass("gravity", "tissue.gravity", gravity_parameters));
+    add_picture("spill", spill_file_, "tissue.blood_spill");
     passes.insert(passes.end(), more.begin(), more.end());
     passes.push_back(pass("blood", "tissue.blood", blood_parameters));
     passes.push_back(pass("account", "tissue.blood_account", {{"state", blood.value("state", "blood")}}));
@@ -73,6 +77,10 @@ json BloodStage::scene() const {
     if (!spill_file_.empty()) {
         scene["targets"]["tissue.blood_spill"] = {{"format", "r32f"}, {"size", {size, size}}};
     }
+    if (!relief_file_.empty()) {
+        scene["targets"]["tissue.relief"] = {{"format", "r32f"}, {"size", {size, size}}};
+        scene["outputs"].push_back("tissue.relief");
+    }
     return scene;
 }
 
@@ -80,24 +88,35 @@ void BloodStage::load() {
     stage_.load(scene());
 }
 
-void BloodStage::spill(const std::function<double(const glm::dvec3&)>& height_mm) {
+std::string BloodStage::picture(const char* name, bool gutters,
+                                const std::function<double(const glm::dvec3&)>& value) {
     load();
     frame(0.0);
     const Image position = read("tissue.position");
     Image image = make_image(size, size, PixelFormat::r32f);
     for (int y = 0; y < size; ++y) {
         for (int x = 0; x < size; ++x) {
-            if (position.at(x, y, 3) == 1.0F) {
+            if (position.at(x, y, 3) == 1.0F || (gutters && position.at(x, y, 3) > 0.0F)) {
                 const glm::dvec3 p(position.at(x, y, 0), position.at(x, y, 1), position.at(x, y, 2));
-                image.set(x, y, 0, static_cast<float>(height_mm(p)));
+                image.set(x, y, 0, static_cast<float>(value(p)));
             }
         }
     }
     const std::array<io::ExrPart, 1> parts{io::ExrPart{.name = "picture", .image = image}};
-    spill_file_ = (folder / "spill.exr").string();
-    io::write_exr(spill_file_, parts, io::ExrCompression::none);
+    std::string file = (folder / (std::string(name) + ".exr")).string();
+    io::write_exr(file, parts, io::ExrCompression::none);
     // Another name, so that nothing of the frame above goes on.
-    blood["state"] = "spilt";
+    blood["state"] = name;
+    return file;
+}
+
+void BloodStage::relief(const std::function<double(const glm::dvec3&)>& height_mm) {
+    relief_file_ = picture("relief", true, height_mm);
+    load();
+}
+
+void BloodStage::spill(const std::function<double(const glm::dvec3&)>& height_mm) {
+    spill_file_ = picture("spilt", false, height_mm);
     load();
 }
 

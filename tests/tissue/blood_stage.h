@@ -50,6 +50,8 @@ class BloodStage {
     nlohmann::json more = nlohmann::json::array();    ///< passes before the blood's
 
     void surface(std::span<const SurfaceChart> charts, const std::function<glm::dvec3(glm::dvec2)>& place);
+    /// Height of a relief over the surface [mm] at a place in the world.
+    void relief(const std::function<double(const glm::dvec3&)>& height_mm);
     /// Blood that lies there at the start [mm], at each cell's centre in the world.
     void spill(const std::function<double(const glm::dvec3&)>& height_mm);
     [[nodiscard]] nlohmann::json scene() const;
@@ -66,8 +68,13 @@ class BloodStage {
     [[nodiscard]] Stage& stage() { return stage_; }
 
   private:
+    /// A picture with a value for each texel of the charts, and with `gutters` around them; its file.
+    std::string picture(const char* name, bool gutters,
+                        const std::function<double(const glm::dvec3&)>& value);
+
     Stage stage_;
     std::string spill_file_;
+    std::string relief_file_;
     double time_s_ = 0.0;
 };
 

@@ -71,7 +71,7 @@ TEST(BloodTime, RestsWhenNothingMoves) {
     EXPECT_EQ(report(0.2).reason, "there is no blood");
     EXPECT_EQ(to_string(report(0.6).status), "run");
     double rested = 0.0;
-    for (double time = 0.8; time < 60.0 && rested == 0.0; time += 0.25) {
+    for (double time = 0.8; time < 120.0 && rested == 0.0; time += 0.25) {
         rested = to_string(report(time).status) == "idle" ? time : 0.0;
     }
     ASSERT_GT(rested, 0.0) << "the blood never rests";
