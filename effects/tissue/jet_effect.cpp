@@ -24,7 +24,7 @@ constexpr gl::RasterState over_picture{.blend = gl::Blend{.destination_rgb = GL_
 void JetParams::visit(ParamVisitor& v) {
     v.field({.name = "state", .doc = "Name of the blood, as its pass has it."}, state);
     v.field({.name = "exposure_s",
-             .doc = "Time over which a picture is taken: drops are streaks as long as they fly in it.",
+             .doc = "Time over which a picture is taken: drops blur along the way that they fly in it.",
              .unit = "s",
              .min = 0.0,
              .max = 1.0},
@@ -97,7 +97,7 @@ void JetEffect::draw(const Pass& pass) {
     for (const JetParticle& particle : particles) {
         const double radius = std::cbrt(particle.volume_mm3 * 3.0 / (4.0 * std::numbers::pi));
         items_.emplace_back(glm::vec3(particle.position_mm), static_cast<float>(radius));
-        items_.emplace_back(glm::vec3(particle.velocity_mm_s), 0.0F);
+        items_.emplace_back(glm::vec3(particle.velocity_mm_s), static_cast<float>(thread_s(particle)));
         items_.emplace_back(particle.sealed_at, 0.0F, 0.0F);
     }
     list_.upload(pass.gl(), items_, "jets of blood");

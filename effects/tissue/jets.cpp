@@ -3,20 +3,49 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 namespace viscera::tissue {
 namespace {
 
 constexpr std::size_t most_particles = 4096;
 constexpr double longest_flight_s = 3.0;
-constexpr double speed_scatter = 0.06;
-constexpr double direction_scatter = 0.04;
+// Volumes of drops are spread evenly over their logarithm, from the mean's quarter to its fourfold.
+constexpr double size_scatter = 1.4;
+// Of drops of the mean volume; smaller ones are thrown further.
+constexpr double speed_scatter = 0.02;
+constexpr double direction_scatter = 0.02;
+constexpr double breakup_scatter = 0.3;
+// Of a stream: growth until breakup, and the square root of density over surface tension (1060 kg/m^3, 0.055
+// N/m).
+constexpr double breakup_growth = 13.0;
+constexpr double inertia_s_mm = 4.39e-3;  // [s per mm^1.5]
 // A particle starts this far out, so that it does not meet the wound it comes from.
 constexpr double start_mm = 0.2;
 // Around the place that a particle meets, the drop that it becomes.
 constexpr double splash_mm = 0.7;
+// What splashes off it: drops, each with a share of its volume, further around it.
+constexpr int spatter_drops = 3;
+constexpr double spatter_share = 0.06;
+constexpr double spatter_mm = 4.0;
 
 }  // namespace
+
+double thread_s(const JetParticle& particle) {
+    // It draws together from three quarters of that age to five.
+    const double t = particle.breakup_s > 0.0
+                         ? std::clamp(2.0 * particle.age_s / particle.breakup_s - 1.5, 0.0, 1.0)
+                         : 1.0;
+    return particle.leaving_s * (1.0 - t * t * (3.0 - 2.0 * t));
+}
+
+double breakup_time_s(double rate_mm3_s, double speed_mm_s) {
+    if (!(rate_mm3_s > 0.0 && speed_mm_s > 0.0)) {
+        return 0.0;
+    }
+    const double diameter_mm = std::sqrt(4.0 / std::numbers::pi * rate_mm3_s / speed_mm_s);
+    return breakup_growth * inertia_s_mm * diameter_mm * std::sqrt(diameter_mm);
+}
 
 void Jets::clear() {
     particles_.clear();
@@ -38,19 +67,37 @@ void Jets::leave(const WoundParams& wound, const glm::vec2& uv, const DropMeter:
                  const glm::dvec3& gravity_mm_s2, double dt_s) {
     const double length = glm::length(wound.direction);
     const glm::dvec3 direction = length > 0.0 ? wound.direction / length : glm::dvec3(0.0);
+    const double whole = drops.count * drops.volume_mm3;
+    volumes_.clear();
     for (int i = 0; i < drops.count; ++i) {
-        const double speed = wound.speed_mm_s * pulse * (1.0 + speed_scatter * noise());
-        const glm::dvec3 scatter(noise(), noise(), noise());
-        const glm::dvec3 velocity = speed * (direction + direction_scatter * scatter);
-        const double since = 0.5 * (1.0 + noise()) * dt_s;
+        volumes_.push_back(std::exp(size_scatter * noise()));
+    }
+    const double sum = std::accumulate(volumes_.begin(), volumes_.end(), 0.0);
+    const double rate = wound.rate_mm3_s * pulse;
+    const double breakup = breakup_time_s(rate, wound.speed_mm_s * pulse);
+    double left = 0.0;  // share of the step's blood that has left
+    for (double volume : volumes_) {
+        const double share = volume / sum;
+        volume = share * whole;
+        // One after the other, the last one at the end of the step.
+        const double since = (1.0 - left - 0.5 * share) * dt_s;
+        left += share;
+        const double scatter = std::cbrt(drops.volume_mm3 / volume);
+        const double speed = wound.speed_mm_s * pulse * (1.0 + scatter * speed_scatter * noise());
+        const glm::dvec3 aside(noise(), noise(), noise());
+        const glm::dvec3 velocity = speed * (direction + scatter * direction_scatter * aside);
+        const double breaks = breakup * (1.0 + breakup_scatter * noise());
         if (particles_.size() >= most_particles) {
-            lost_mm3_ += drops.volume_mm3;
+            lost_mm3_ += volume;
             continue;
         }
         const glm::dvec3 flown = since * (velocity + 0.5 * since * gravity_mm_s2);
         particles_.push_back({.position_mm = wound.position_mm + start_mm * direction + flown,
                               .velocity_mm_s = velocity + since * gravity_mm_s2,
-                              .volume_mm3 = drops.volume_mm3,
+                              .volume_mm3 = volume,
+                              .age_s = since,
+                              .leaving_s = volume / rate,
+                              .breakup_s = breaks,
                               .sealed_at = uv});
     }
 }
@@ -61,10 +108,13 @@ void Jets::step(const TriangleTree& surface, const glm::dvec3& gravity_mm_s2, do
         const glm::dvec3 to =
             particle.position_mm + dt_s * (particle.velocity_mm_s + 0.5 * dt_s * gravity_mm_s2);
         if (const auto hit = surface.first_hit(particle.position_mm, to)) {
-            hits.push_back({.uv = glm::vec2(hit->uv - glm::floor(hit->uv)),
-                            .volume_mm3 = static_cast<float>(particle.volume_mm3),
-                            .radius_mm = static_cast<float>(splash_mm),
-                            .sealed_at = particle.sealed_at});
+            for (int i = 0; i <= spatter_drops; ++i) {
+                const double share = i == 0 ? 1.0 - spatter_drops * spatter_share : spatter_share;
+                hits.push_back({.uv = glm::vec2(hit->uv - glm::floor(hit->uv)),
+                                .volume_mm3 = static_cast<float>(share * particle.volume_mm3),
+                                .radius_mm = static_cast<float>(i == 0 ? splash_mm : spatter_mm),
+                                .sealed_at = particle.sealed_at});
+            }
             return false;
         }
         particle.position_mm = to;

@@ -18,19 +18,21 @@ double covered_mm2(int pixels, const json& jet) {
         .high = {40.0, 40.0}, .origin_px = {4.0, 4.0}, .a_px = {0.6, 0.0}, .b_px = {0.0, 0.6}};
     stage.surface(std::span(&chart, 1), [](glm::dvec2 p) { return glm::dvec3(p, 0.0); });
     stage.gravity = {{"gravity_m_s2", {0, 0, -9.80665}}};
-    stage.blood = {{"liquid", {{"max_drops", 1024}, {"drop_mm3", 0.25}}},
-                   {"wounds",
-                    {{{"position_mm", {20, 20, 0}},
-                      {"rate_mm3_s", 16.0},
-                      {"kind", "jet"},
-                      {"direction", {0.1, 0, 1}},
-                      {"speed_mm_s", 600.0},
-                      {"pulse_hz", 0.0}}}}};
+    stage.blood = {{"liquid", {{"max_drops", 1024}, {"drop_mm3", 0.25}}}};
+    // Beside each other, so that few drops lie over each other, and at other places in a wide pixel each.
+    for (const double x : {12.1, 16.3, 20.9, 25.4, 29.5}) {
+        stage.blood["wounds"].push_back({{"position_mm", {x, 20, 0}},
+                                         {"rate_mm3_s", 8.0},
+                                         {"kind", "jet"},
+                                         {"direction", {0.1, 0, 1}},
+                                         {"speed_mm_s", 500.0 + 5.0 * x},
+                                         {"pulse_hz", 0.0}});
+    }
     json scene = stage.scene();
-    // Looks across the surface, which lies below the picture.
+    // Looks across the surface, which is seen as a line that the jets leave, with room for wide ones below.
     scene["camera"] = {{"kind", "orthographic"},
-                       {"eye_mm", {22, -200, 14}},
-                       {"target_mm", {22, 0, 14}},
+                       {"eye_mm", {22, -200, 10}},
+                       {"target_mm", {22, 0, 10}},
                        {"up", {0, 0, 1}},
                        {"height_mm", 24}};
     scene["resolution"] = {pixels, pixels};
@@ -57,8 +59,8 @@ double covered_mm2(int pixels, const json& jet) {
 }
 
 TEST(JetPicture, CoversTheSameAtAnyResolution) {
-    // Streaks are 0.45 mm wide: 15 pixels to a third of one.
-    const json jet = {{"colour", {1, 1, 1}}, {"exposure_s", 0.006}};
+    // Streaks are 0.3 to 0.7 mm wide, 15 pixels to a third of one, and shorter than the way between them.
+    const json jet = {{"colour", {1, 1, 1}}, {"exposure_s", 0.001}};
     const double fine = covered_mm2(800, jet);
     ASSERT_GT(fine, 1.0);
     for (const int pixels : {200, 100, 50, 16}) {
