@@ -47,5 +47,5 @@ picture organ final 'Liver, gallbladder and omentum through a laparoscope' asset
 picture organ_tissue final 'Bruise, coagulated spots, blood, and a membrane in front' assets/scenes/organ_tissue.json --time 3
 picture mixed volume.colour 'An opened head: a quarter of the rays, under a mesh in full resolution' assets/scenes/mixed.json
 picture stereo volume.colour 'The same for two eyes, side by side' assets/scenes/stereo.json
-size=960x540 picture bleeding final 'Laparoscopy: a cut bleeds, an artery in it spurts, blood runs down and gathers' assets/scenes/laparoscopy.json --time 3
-size=960x540 picture haemostasis final 'Four seconds later: a hook coagulates along the cut, and the bleeding stops' assets/scenes/laparoscopy.json --time 7
+size=960x540 picture bleeding final 'Laparoscopy: a cut bleeds, an artery in it spurts, blood runs down and gathers' assets/scenes/laparoscopy.json --time 2
+size=960x540 picture haemostasis final 'Five seconds later: a hook coagulates along the cut, and the bleeding stops' assets/scenes/laparoscopy.json --time 7
