@@ -130,7 +130,7 @@ TEST(BloodRelief, AFlatOneChangesNoBit) {
     std::array<std::vector<std::byte>, 2> gravity;
     std::array<std::vector<std::byte>, 2> blood;
     for (std::size_t i = 0; i < 2; ++i) {
-        BloodStage stage(64);
+        BloodStage stage(96);
         const SurfaceChart chart{.high = {40.0, 40.0}, .origin_px = {8.0, 8.0}, .a_px = {1.0, 0.2}};
         set_sheet(stage, {3.0, 1.0, -9.0}, std::span(&chart, 1), 0.1);
         stage.blood["wounds"] = {{{"position_mm", {10, 10, 0}}, {"rate_mm3_s", 300.0}}};
@@ -139,12 +139,40 @@ TEST(BloodRelief, AFlatOneChangesNoBit) {
         } else {
             stage.load();
         }
-        stage.run(0.0, 1.0, 0.1);
+        const FrameReport& report = stage.run(0.0, 1.0, 0.1);
+        EXPECT_EQ(to_string(pass_of(report, "gravity").status), "cached");
         gravity[i] = stage.read("tissue.gravity").data;
         blood[i] = stage.read("tissue.blood_height").data;
     }
     EXPECT_EQ(gravity[0], gravity[1]);
     EXPECT_EQ(blood[0], blood[1]);
+}
+
+TEST(BloodRelief, NoReliefMakesBloodLoseItsHead) {
+    // Cliffs, holes without end, and what is no number, at the strongest pull.
+    BloodStage stage(64);
+    const SurfaceChart chart{.high = {48.0, 48.0}, .origin_px = {8.0, 8.0}};
+    set_sheet(stage, {3.0, 1.0, -9.0}, std::span(&chart, 1), 0.2);
+    stage.gravity["relief_pull"] = 100.0;
+    stage.blood["wounds"] = {{{"position_mm", {20, 20, 0}}, {"rate_mm3_s", 500.0}},
+                             {{"position_mm", {30, 35, 0}}, {"rate_mm3_s", 500.0}}};
+    stage.relief([](const glm::dvec3& p) {
+        const int place = static_cast<int>(p.x) * 7 + static_cast<int>(p.y) * 3;
+        return place % 5 == 0    ? 5000.0
+               : place % 11 == 0 ? -1e30
+               : place % 13 == 0 ? std::nan("")
+                                 : 0.1 * (place % 3);
+    });
+    stage.run(0.0, 2.0, 0.1);
+    for (const char* target :
+         {"tissue.gravity", "tissue.blood_height", "tissue.blood_color", "tissue.blood_normal"}) {
+        for (const float value : to_floats(stage.read(target))) {
+            ASSERT_TRUE(std::isfinite(value)) << target;
+        }
+    }
+    const BloodAccount account = stage.account();
+    EXPECT_NEAR(account.given, 2000.0, 10.0);
+    EXPECT_NEAR(account.kept() / account.given, 1.0, 1e-5);
 }
 
 TEST(BloodPinning, APoolSpreadsUntilItsEdgeHolds) {
