@@ -20,6 +20,7 @@ class BloodEffect final : public Effect {
     void validate() const override;
     [[nodiscard]] std::vector<Port> ports() const override;
     [[nodiscard]] bool uses_view() const override { return false; }
+    [[nodiscard]] bool keeps_state() const override { return true; }
     [[nodiscard]] std::span<const ProgramDesc> programs() const override { return programs_; }
     [[nodiscard]] Work prepare(Prepare& prepare) override;
     void draw(const Pass& pass) override;

@@ -101,6 +101,9 @@ class Effect {
     /// own for each; another runs once for both unless it reads what differs from eye to eye. An effect that
     /// says no is given frames without an eye.
     [[nodiscard]] virtual bool uses_view() const { return true; }
+    /// Whether what it draws builds on frames before by more than its `previous` ports: by a state that it
+    /// shares.
+    [[nodiscard]] virtual bool keeps_state() const { return false; }
     /// Every program that draw() may use under the present parameters, so that all can be validated without a
     /// GPU.
     [[nodiscard]] virtual std::span<const ProgramDesc> programs() const = 0;

@@ -52,6 +52,15 @@ bool reads_history(const SceneEffects& scene) {
 
 }  // namespace
 
+bool LoadedScene::keeps_state() const {
+    for (std::size_t p = 0; p < scene_.passes.size(); ++p) {
+        if (scene_.passes[p].enabled && effects_.effects[p]->keeps_state()) {
+            return true;
+        }
+    }
+    return has_history_;
+}
+
 void LoadedScene::set(Scene scene, std::span<const ImportedTarget> imported) {
     SceneEffects effects = make_effects(scene, registry_);
     // Compiled once for its faults, so that a scene that cannot run is refused while the old one still can.

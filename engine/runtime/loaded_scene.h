@@ -33,7 +33,8 @@ class LoadedScene {
     /// Targets that the frames bring, as set() was told.
     [[nodiscard]] const std::vector<ImportedTarget>& expected() const { return expected_; }
     /// Whether a target of one frame is read by the next.
-    [[nodiscard]] bool has_history() const { return has_history_; }
+    /// Whether what a frame shows depends on the frames before it.
+    [[nodiscard]] bool keeps_state() const;
 
     /// The scene with one parameter changed, and which pass that is. Throws Error(scene).
     struct Edited {

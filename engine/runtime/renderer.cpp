@@ -252,7 +252,7 @@ Frame Renderer::frame(std::uint64_t index) const {
 }
 
 bool Renderer::keeps_state() const {
-    return impl_->scene_.has_history();
+    return impl_->scene_.keeps_state();
 }
 const FrameReport& Renderer::render(const Frame& frame) {
     return impl_->render(frame);

@@ -56,6 +56,22 @@ TEST(BloodTime, NoFrameRateChangesTheBlood) {
     }
 }
 
+/// Blood keeps its state beside the targets; who shows one late frame has to render those before it all the
+/// same.
+TEST(BloodTime, SaysThatFramesBuildOnEachOther) {
+    BloodStage stage(64);
+    set_slope(stage);
+    stage.load();
+    EXPECT_TRUE(stage.stage().renderer().keeps_state());
+    json scene = stage.scene();
+    for (json& pass : scene["passes"]) {
+        pass["enabled"] = pass["effect"] != "tissue.blood" && pass["effect"] != "tissue.blood_account";
+    }
+    scene["outputs"] = {"tissue.gravity"};
+    stage.stage().load(scene);
+    EXPECT_FALSE(stage.stage().renderer().keeps_state());
+}
+
 TEST(BloodTime, RestsWhenNothingMoves) {
     BloodStage stage(64);
     set_slope(stage);
