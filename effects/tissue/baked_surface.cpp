@@ -79,10 +79,14 @@ void BakedSurface::move(Prepare& prepare) {
 }
 
 void BakedSurface::check_bake(Prepare& prepare, std::string_view pass) const {
+    check_mesh(prepare, pass, mesh_->key(), name_);
+}
+
+void check_mesh(Prepare& prepare, std::string_view pass, std::uint64_t mesh_key, const std::string& name) {
     const std::uint64_t subject = prepare.subject("position");
-    if (subject != 0 && subject != mesh_->key()) {
+    if (subject != 0 && subject != mesh_key) {
         prepare.log().fault("tissue.other_mesh",
-                            std::string(pass) + " has '" + name_ +
+                            std::string(pass) + " has '" + name +
                                 "' as its mesh, but the bake that it reads is of another mesh or atlas: "
                                 "it will paint in the wrong places");
     }

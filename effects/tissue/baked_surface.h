@@ -26,6 +26,10 @@ void visit_size(ParamVisitor& v, int& size);
 /// Throws Error(scene) when the bake that a pass reads has another size than the target that it writes.
 void check_size(const Prepare& prepare, std::string_view written);
 
+/// Says so when the bake that a pass reads is of another mesh. `pass`: its effect's name; `name`: its mesh's
+/// file.
+void check_mesh(Prepare& prepare, std::string_view pass, std::uint64_t mesh_key, const std::string& name);
+
 /// A mesh where it lies in the world, with the texels that stand for its points: one object for all passes
 /// that paint on it at one size.
 class BakedSurface {
@@ -39,7 +43,7 @@ class BakedSurface {
     /// Takes the host's vertices of this frame, see SurfaceMesh::move().
     void move(Prepare& prepare);
 
-    /// Says so when the bake that a pass reads is of another mesh. `pass`: its effect's name.
+    /// See check_mesh().
     void check_bake(Prepare& prepare, std::string_view pass) const;
     [[nodiscard]] const SurfaceMesh& mesh() const { return *mesh_; }
     [[nodiscard]] const glm::dmat4& to_world() const { return to_world_; }

@@ -101,6 +101,20 @@ void BloodEffect::check_sizes(const Prepare& prepare) const {
     }
 }
 
+/// Whether bake and flow are of the mesh and of the gravity that the parameters name.
+void BloodEffect::check_inputs(Prepare& prepare, std::uint64_t flow) const {
+    check_mesh(prepare, "tissue.blood", mesh_->key(), params_.mesh.file.path.native());
+    const std::uint64_t surface = prepare.subject("position");
+    const std::uint64_t noted = surface == 0 ? 0 : flow_origin(prepare.assets(), surface)->key;
+    if (noted != 0 && noted != flow) {
+        prepare.log().fault(
+            "tissue.other_gravity",
+            "tissue.blood and the tissue.gravity that it reads differ in gravity_m_s2, "
+            "host_gravity, spreading, relief_pull, open_edges or in having a relief: blood stops "
+            "at seams; give both the same");
+    }
+}
+
 Work BloodEffect::prepare(Prepare& prepare) {
     if (!prepare.has("position") || !prepare.has("gravity") || !prepare.has("flow_right")) {
         return Work::idle("there is no surface");
@@ -122,15 +136,9 @@ Work BloodEffect::prepare(Prepare& prepare) {
     mesh_->move(frame.values, params_.mesh.host_positions, prepare.log());
     gravity_ = gravity_of(params_.gravity, frame.values, prepare.log());
     relief_pull_ = relief_pull(params_.gravity, prepare);
-    surface_key_ = Hash()
-                       .add(mesh_->shape_key())
-                       .add(to_world_)
-                       .add(gravity_.down)
-                       .add(gravity_.strength)
-                       .add(params_.gravity.spreading)
-                       .add(relief_pull_)
-                       .add(params_.open_edges)
-                       .value();
+    const std::uint64_t flow = flow_key(gravity_, params_.gravity, relief_pull_, params_.open_edges);
+    check_inputs(prepare, flow);
+    surface_key_ = Hash().add(mesh_->shape_key()).add(to_world_).add(flow).value();
     collect_wounds(params_, frame.values, prepare.log(), wounds_);
     collect_tools(params_, frame.values, prepare.log(), tools_);
 

@@ -34,6 +34,7 @@ class BloodEffect final : public Effect {
         glm::vec2 uv{0.0F};
     };
     void check_sizes(const Prepare& prepare) const;
+    void check_inputs(Prepare& prepare, std::uint64_t flow) const;
     void find_places();
     void update_tree();
     void spawn(const Pass& pass);

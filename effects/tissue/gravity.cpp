@@ -2,7 +2,9 @@
 
 #include <cmath>
 
+#include "engine/core/hash.h"
 #include "engine/core/log.h"
+#include "engine/runtime/assets.h"
 #include "engine/runtime/pass.h"
 
 namespace viscera::tissue {
@@ -51,6 +53,21 @@ Gravity gravity_of(const GravityParams& params, const HostValues* values, Log& l
         return {};
     }
     return {gravity / length, length / standard_gravity_m_s2};
+}
+
+std::uint64_t flow_key(const Gravity& gravity, const GravityParams& params, double relief_pull,
+                       bool open_edges) {
+    return Hash()
+        .add(gravity.down)
+        .add(gravity.strength)
+        .add(params.spreading)
+        .add(relief_pull)
+        .add(open_edges)
+        .value();
+}
+
+std::shared_ptr<FlowOrigin> flow_origin(Assets& assets, std::uint64_t surface) {
+    return assets.shared<FlowOrigin>(surface, [] { return std::make_shared<FlowOrigin>(); });
 }
 
 Port read_relief() {

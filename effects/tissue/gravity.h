@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <memory>
 #include <string>
 
 #include <glm/glm.hpp>
@@ -10,6 +12,7 @@
 #include "engine/runtime/frame.h"
 
 namespace viscera {
+class Assets;
 class Log;
 class Pass;
 }  // namespace viscera
@@ -39,6 +42,18 @@ struct Gravity {
 /// The host's gravity (3 floats [m/s^2]) where it gives one, else the scene's. What is not finite or has
 /// another number of entries is a fault, and the scene's counts.
 [[nodiscard]] Gravity gravity_of(const GravityParams& params, const HostValues* values, Log& log);
+
+/// Hash of all that a flow over a surface is made by, besides the surface.
+[[nodiscard]] std::uint64_t flow_key(const Gravity& gravity, const GravityParams& params, double relief_pull,
+                                     bool open_edges);
+
+/// What the flow over a surface was made by this frame. tissue.gravity notes it; tissue.blood, which has the
+/// same parameters for seams and jets, compares: a film that another gravity drives at seams stops there.
+struct FlowOrigin {
+    std::uint64_t key = 0;  ///< flow_key(); 0: unknown
+};
+/// Of a surface as Prepare::subject() tells it.
+[[nodiscard]] std::shared_ptr<FlowOrigin> flow_origin(Assets& assets, std::uint64_t surface);
 
 /// The port that reads the relief.
 [[nodiscard]] Port read_relief();

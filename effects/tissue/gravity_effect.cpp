@@ -52,6 +52,8 @@ Work GravityEffect::prepare(Prepare& prepare) {
     check_size(prepare, "gravity");
     gravity_ = gravity_of(params_.gravity, prepare.frame().values, prepare.log());
     relief_pull_ = relief_pull(params_.gravity, prepare);
+    flow_origin(prepare.assets(), prepare.subject("position"))->key =
+        flow_key(gravity_, params_.gravity, relief_pull_, params_.open_edges);
     return Work::all(Hash().add(prepare.parameters_key()).add(gravity_.down).add(gravity_.strength).value());
 }
 

@@ -72,6 +72,40 @@ TEST(BloodTime, SaysThatFramesBuildOnEachOther) {
     EXPECT_FALSE(stage.stage().renderer().keeps_state());
 }
 
+/// A film that seams and faces drive by two gravities would stop at seams.
+TEST(BloodTime, AnotherGravityOrMeshThanThatOfItsFlowIsSaid) {
+    BloodStage stage(64);
+    set_slope(stage);
+    stage.blood = {{"wounds", json::array({wound(20, 55, 80.0)})}};
+    const json scene = stage.scene();
+    const auto faults_with = [&](const char* key, const json& value) {
+        json changed = scene;
+        for (json& pass : changed["passes"]) {
+            if (pass["effect"] == "tissue.blood") {
+                pass["parameters"][key] = value;
+            }
+        }
+        stage.stage().load(changed);
+        stage.frame(0.0);
+        stage.frame(0.1);
+        return stage.stage().renderer().log().faults();
+    };
+    EXPECT_TRUE(faults_with("state", "same").empty());
+    for (const auto& [key, value] : {std::pair<const char*, json>{"spreading", 0.4},
+                                     {"gravity_m_s2", {0, 1, -9}},
+                                     {"open_edges", false}}) {
+        const auto before = stage.stage().renderer().log().faults();
+        const auto after = faults_with(key, value);
+        EXPECT_GT(after.at("tissue.other_gravity"),
+                  before.contains("tissue.other_gravity") ? before.at("tissue.other_gravity") : 0U)
+            << key;
+        EXPECT_FALSE(after.contains("tissue.other_mesh")) << key;
+    }
+    json mesh = scene["passes"][0]["parameters"]["mesh"];
+    mesh["atlas"] = "generated";
+    EXPECT_TRUE(faults_with("mesh", mesh).contains("tissue.other_mesh"));
+}
+
 TEST(BloodTime, RestsWhenNothingMoves) {
     BloodStage stage(64);
     set_slope(stage);
