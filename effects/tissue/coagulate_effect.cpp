@@ -314,9 +314,9 @@ void CoagulateEffect::list_tiles(int side, const PixelRegion& region) {
             }
         }
     }
-    const auto kept =
-        std::ranges::partition(drawn_tiles_, [](const glm::vec4& tile) { return tile.w > 0.0F; });
-    touched_tiles_ = drawn_tiles_.size() - kept.size();
+    const auto kept = std::partition(drawn_tiles_.begin(), drawn_tiles_.end(),
+                                     [](const glm::vec4& tile) { return tile.w > 0.0F; });
+    touched_tiles_ = static_cast<std::size_t>(kept - drawn_tiles_.begin());
     for (std::size_t p = 0; p < pair_tiles_.size(); ++p) {
         const std::uint32_t entry = next_[pair_tiles_[p]]++;
         list_[entry / 4][static_cast<int>(entry % 4)] = static_cast<float>(pair_contacts_[p]);

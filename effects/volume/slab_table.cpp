@@ -167,12 +167,14 @@ std::vector<Piece> affordable_pieces(ExtinctionKnots knots, const TexelRange& ra
         knots = thinned(knots);
     }
     const double largest = knots.most_extinction();
-    for (double tolerance = 2e-6; tolerance < 1.0; tolerance *= 4.0) {
+    double tolerance = 2e-6;
+    while (tolerance < 1.0) {
         const Cut how{tolerance * largest, range.resolution() / 8.0, most + 1};
         std::vector<Piece> pieces = pieces_of(knots, range, how);
         if (pieces.size() <= most) {
             return pieces;
         }
+        tolerance *= 4.0;
     }
     return pieces_of(knots, range, {2.0 * largest, range.resolution() / 8.0, most});
 }

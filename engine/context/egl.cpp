@@ -147,7 +147,8 @@ std::unique_ptr<Context> create_egl_device(const ContextOptions& options) {
 
     std::vector<std::size_t> order(devices.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::ranges::stable_partition(order, [&](std::size_t i) { return !egl.is_software(devices[i]); });
+    std::stable_partition(order.begin(), order.end(),
+                          [&](std::size_t i) { return !egl.is_software(devices[i]); });
     std::string said;
     for (const std::size_t i : order) {
         try {

@@ -113,7 +113,7 @@ void drop_doubled(MeshData& mesh, std::string_view where, Log& log) {
     for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
         const auto corner = mesh.indices.begin() + static_cast<std::ptrdiff_t>(3 * t);
         Triangle triangle{corner[0], corner[1], corner[2]};
-        std::ranges::rotate(triangle, std::ranges::min_element(triangle));
+        std::rotate(triangle.begin(), std::ranges::min_element(triangle), triangle.end());
         triangles.emplace_back(triangle, t);
     }
     std::ranges::sort(triangles);

@@ -54,7 +54,7 @@ SamplingRateManager::SamplingRateManager(const SamplingRateOptions& options) : o
 
 Quality SamplingRateManager::next(const FrameObservation& seen) {
     if (seen.draw_ms && is_time(*seen.draw_ms)) {
-        std::ranges::rotate(full_ms_, full_ms_.begin() + 1);
+        std::rotate(full_ms_.begin(), full_ms_.begin() + 1, full_ms_.end());
         full_ms_.back() = *seen.draw_ms / share_;
     }
     if (seen.moved) {
