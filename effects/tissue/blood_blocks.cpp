@@ -42,6 +42,13 @@ std::array<gl::Framebuffer, 2> targets_of(const gl::Functions& gl, const std::ar
     return {gl::Framebuffer(gl, textures[0], label), gl::Framebuffer(gl, textures[1], label)};
 }
 
+std::array<gl::Framebuffer, 2> targets_of(const gl::Functions& gl, const gl::Texture& first,
+                                          const std::array<gl::Texture, 2>& second, const char* label) {
+    const std::array<const gl::Texture*, 2> even{&first, &second[0]};
+    const std::array<const gl::Texture*, 2> odd{&first, &second[1]};
+    return {gl::Framebuffer(gl, even, nullptr, label), gl::Framebuffer(gl, odd, nullptr, label)};
+}
+
 int divided_up(int a, int b) {
     return (a + b - 1) / b;
 }
@@ -65,7 +72,7 @@ BloodBlocks::BloodBlocks(const gl::Functions& gl, int size)
       across_target_(gl, across_, "tiles of blood across seams"),
       reach_target_(gl, reach_, "tiles in reach of blood"),
       held_target_(targets_of(gl, held_, "blocks of blood")),
-      near_target_(gl, near_, "blocks near blood"),
+      near_target_(targets_of(gl, near_, plan_, "blocks near blood")),
       plan_target_(targets_of(gl, plan_, "blocks to be stepped")),
       stepped_target_(gl, stepped_, "blocks stepped"),
       answers_(gl) {}
@@ -213,11 +220,7 @@ void BloodBlocks::plan(const Pass& pass, const BloodMedium& medium, const Blood&
     bind(pass, program, "u_reach", reach_);
     bind(pass, program, "u_blocks", held_[now_]);
     bind(pass, program, "u_surface", surface_);
-    draw_into(pass, near_target_, gl::overwrite_state);
-    pass.draw_fullscreen();
-    const gl::Program& copy = use(pass, BloodShader::copy);
-    bind(pass, copy, "u_film", near_);
-    draw_into(pass, plan_target_[now_], gl::overwrite_state);
+    draw_into(pass, near_target_[now_], gl::overwrite_state);
     pass.draw_fullscreen();
     if (block_pairs_.count > 0) {
         const gl::Program& marks = use(pass, BloodShader::mark_of_blocks);

@@ -116,7 +116,7 @@ class BloodBlocks {
     gl::Framebuffer across_target_;
     gl::Framebuffer reach_target_;
     std::array<gl::Framebuffer, 2> held_target_;
-    gl::Framebuffer near_target_;
+    std::array<gl::Framebuffer, 2> near_target_;  ///< with the plan
     std::array<gl::Framebuffer, 2> plan_target_;
     gl::Framebuffer stepped_target_;
     std::size_t now_ = 0;

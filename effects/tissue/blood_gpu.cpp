@@ -12,8 +12,12 @@ namespace {
 
 constexpr int ring_width = 256;
 constexpr int deposit_points = 4;
-constexpr int ledger_width = 1024;
 constexpr int cap_points = 5;  // as blood_cap.vert
+
+// A new drop, whose age in alpha is 0, takes the place of what was there; what is given, with an alpha of 1,
+// is added up.
+constexpr gl::RasterState spawn_state{
+    .blend = gl::Blend{.destination_rgb = GL_SRC_ALPHA, .destination_alpha = GL_SRC_ALPHA}};
 
 std::array<gl::Texture, 2> pair_of(const gl::Functions& gl, int width, int height, const char* label) {
     return {gl::Texture::make_2d(gl, width, height, PixelFormat::rgba32f, label),
@@ -37,15 +41,15 @@ BloodGpu::BloodGpu(const gl::Functions& gl, int size, int max_drops)
       drops_(pair_of(gl, ring_width, (max_drops + ring_width - 1) / ring_width, "drops of blood")),
       deposit_(gl::Texture::make_2d(gl, drops_[0].width(), drops_[0].height(), PixelFormat::rgba32f,
                                     "what drops leave behind")),
-      ledger_(gl::Texture::make_2d(gl, ledger_width, 1, PixelFormat::r32f, "blood given")),
+      ledger_(
+          gl::Texture::make_2d(gl, drops_[0].width(), drops_[0].height(), PixelFormat::r32f, "blood given")),
       film_target_{target_of(gl, film_[0], relief_, "film of blood"),
                    target_of(gl, film_[1], relief_, "film of blood")},
       drops_target_{target_of(gl, drops_[0], deposit_, "drops of blood"),
                     target_of(gl, drops_[1], deposit_, "drops of blood")},
-      drops_alone_{gl::Framebuffer(gl, drops_[0], "drops of blood"),
-                   gl::Framebuffer(gl, drops_[1], "drops of blood")},
-      relief_target_(gl, relief_, "relief of blood"),
-      ledger_target_(gl, ledger_, "blood given") {}
+      spawn_target_{target_of(gl, drops_[0], ledger_, "new drops of blood"),
+                    target_of(gl, drops_[1], ledger_, "new drops of blood")},
+      relief_target_(gl, relief_, "relief of blood") {}
 
 std::int64_t BloodGpu::capacity() const {
     return static_cast<std::int64_t>(ring_width) * drops_[0].height();
@@ -101,10 +105,10 @@ void BloodGpu::take_surface(const Pass& pass, const BloodMedium& medium, bool em
         film_now_ = i == 0 ? 1 - film_now_ : film_now_;
     }
     if (empty) {
-        for (const gl::Framebuffer& target : drops_alone_) {
+        for (const gl::Framebuffer& target : spawn_target_) {
             clear(pass, target);
+            target.clear_colour(1, {0.0F, 0.0F, 0.0F, 0.0F});
         }
-        clear(pass, ledger_target_);
         blocks_.begin(pass, spill);
     }
     if (!seams_->empty()) {
@@ -188,23 +192,17 @@ void BloodGpu::spawn(const Pass& pass, const BloodMedium& medium, std::span<cons
     }
     spawn_.upload(*gl_, spawn_items_, "new drops of blood");
     const bool energy = pass.has("energy");
-    for (const bool counts : {false, true}) {
-        const gl::Program& program =
-            use(pass, counts ? (energy ? BloodShader::counted_energy : BloodShader::counted)
-                             : (energy ? BloodShader::spawned_energy : BloodShader::spawned));
-        bind_place(pass, program);
-        bind(pass, program, "u_spawn", spawn_.texture());
-        pass.bind(program, "u_metric", "metric");
-        if (energy) {
-            pass.bind(program, "u_energy", "energy");
-            program.set("u_sealed", medium.sealed_energy);
-        }
-        program.set("u_ring",
-                    counts ? glm::ivec2(ledger_width, 1) : glm::ivec2(drops_[0].width(), drops_[0].height()));
-        draw_into(pass, counts ? ledger_target_ : drops_alone_[drops_now_],
-                  counts ? gl::add_blend_state : gl::overwrite_state);
-        pass.draw_generated(GL_POINTS, static_cast<int>(spawns.size()), 1);
+    const gl::Program& program = use(pass, energy ? BloodShader::spawned_energy : BloodShader::spawned);
+    bind_place(pass, program);
+    bind(pass, program, "u_spawn", spawn_.texture());
+    pass.bind(program, "u_metric", "metric");
+    if (energy) {
+        pass.bind(program, "u_energy", "energy");
+        program.set("u_sealed", medium.sealed_energy);
     }
+    program.set("u_ring", glm::ivec2(ledger_.width(), ledger_.height()));
+    draw_into(pass, spawn_target_[drops_now_], spawn_state);
+    pass.draw_generated(GL_POINTS, static_cast<int>(spawns.size()), 1);
     if (!std::ranges::all_of(spawns, &DropSpawn::expected)) {
         blocks_.add_drops(
             pass, medium, blood({}),

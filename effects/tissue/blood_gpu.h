@@ -87,13 +87,12 @@ class BloodGpu {
     std::array<gl::Texture, 2> drops_;
     gl::Texture deposit_;
     ListTexture spawn_;
-    gl::Texture ledger_;  ///< volume given [mm^3], in parts
+    gl::Texture ledger_;  ///< volume given [mm^3], by the place of its drops in the ring
     std::optional<BloodSeams> seams_;
     std::array<gl::Framebuffer, 2> film_target_;   ///< with the relief
     std::array<gl::Framebuffer, 2> drops_target_;  ///< with the deposit
-    std::array<gl::Framebuffer, 2> drops_alone_;
+    std::array<gl::Framebuffer, 2> spawn_target_;  ///< with the ledger
     gl::Framebuffer relief_target_;
-    gl::Framebuffer ledger_target_;
     std::size_t film_now_ = 0;
     std::size_t drops_now_ = 0;
     std::vector<glm::vec4> spawn_items_;

@@ -22,8 +22,6 @@ std::vector<ProgramDesc> blood_programs() {
             {"tissue/blood_deposit.vert", "tissue/blood_add.frag", {}},
             {"tissue/blood_spawn.vert", "tissue/blood_spawn.frag", {}},
             {"tissue/blood_spawn.vert", "tissue/blood_spawn.frag", {"ENERGY"}},
-            {"tissue/blood_spawn.vert", "tissue/blood_spawn.frag", {"LEDGER"}},
-            {"tissue/blood_spawn.vert", "tissue/blood_spawn.frag", {"LEDGER", "ENERGY"}},
             {whole, "tissue/blood_scan.frag", {}},
             {whole, "tissue/blood_search.frag", {}},
             {whole, "tissue/blood_reach.frag", {}},

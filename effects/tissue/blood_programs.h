@@ -33,8 +33,6 @@ enum class BloodShader : std::size_t {
     deposited,
     spawned,
     spawned_energy,
-    counted,
-    counted_energy,
     scan,
     search,
     reach,

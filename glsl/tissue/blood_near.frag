@@ -5,6 +5,7 @@ uniform sampler2D u_reach;    // of tiles: of blood_reach.frag
 uniform sampler2D u_blocks;   // r: see blood_held.glsl; b: shows blood
 uniform sampler2D u_surface;  // r: there is a surface
 layout(location = 0) out vec2 o_near;  // r: by 3/4 that of a thin film, by 1 more; g: to be shown
+layout(location = 1) out vec2 o_plan;  // the same, to which come those across seams
 
 void main() {
     ivec2 block = ivec2(gl_FragCoord.xy);
@@ -28,4 +29,5 @@ void main() {
     bool steps = flows && reach.r > 0.5;
     bool shows = shown > 0.5 || (flows && reach.g > 0.5);
     o_near = bare ? vec2(0.0) : vec2(steps ? (far ? 1.0 : 0.75) : 0.0, shows);
+    o_plan = o_near;
 }

@@ -9,7 +9,7 @@ uniform sampler2D u_metric;
 uniform sampler2D u_energy;
 uniform float u_sealed;  // energy at which tissue no longer bleeds
 #endif
-uniform ivec2 u_ring;  // size of the ring's texture, or of the ledger
+uniform ivec2 u_ring;  // size of the ring's texture
 flat out vec4 v_drop;
 
 void main() {
