@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "effects/volume/colours.h"
@@ -79,6 +80,7 @@ void RayCastEffect::draw(const Pass& pass) {
         fill_in(pass, frame);
     }
     const auto variant = std::ranges::find(variants_, variant_);
+    assert(variant != variants_.end());
     const gl::Program& program = pass.use(static_cast<std::size_t>(variant - variants_.begin()));
     set_picture(pass, frame, program);
     if (variant_.fills) {

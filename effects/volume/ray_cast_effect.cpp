@@ -74,6 +74,8 @@ void RayCastEffect::check_colours() const {
            "preintegrated integrates a transfer function over");
     refuse(params_.look.labels.used() && params_.look.labels.has_ramps(), "/labels",
            "transfer functions of segments take");
+    refuse(!params_.transfer_function.gradient.empty(), "/transfer_function/gradient",
+           "opacity by gradient is by that of");
 }
 
 /// With an atlas they are made on the fly: nothing else is as large as what needs one.

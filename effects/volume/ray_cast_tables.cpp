@@ -34,10 +34,14 @@ void RayCastEffect::find_function(Prepare& prepare) {
     if (wanted == RayFunction::density) {
         function_ = normalised(density_function(function_, params_.density), faults);
     } else if (wanted == RayFunction::accumulate) {
+        const std::vector<GradientPoint> gradient = std::move(function_.gradient);
         function_ =
             normalised(accumulate_function(params_.accumulate, source_->statistics.min,
                                            source_->statistics.max, source_->volume().grid.diagonal_mm()),
                        faults);
+        if (!shows_colours()) {
+            function_.gradient = gradient;
+        }
     }
     variant_.look = projects() ? Look::Variant{} : Look::variant(params_.look, function_);
 }

@@ -359,7 +359,9 @@ TEST_F(ColourAccumulation, RefusesWhatTakesAValue) {
     EXPECT_THROW((void)stage_.cast(volume, parameters(channels(1)), look_), Error);
     const nlohmann::json own{{"host", "labels"}, {"segments", {{{"id", 1}, {"points", {{{"value", 0}}}}}}}};
     for (const auto& [where, value] :
-         std::map<std::string, nlohmann::json>{{"/sampling/scheme", "preintegrated"}, {"/labels", own}}) {
+         std::map<std::string, nlohmann::json>{{"/sampling/scheme", "preintegrated"},
+                                               {"/labels", own},
+                                               {"/transfer_function/gradient", {{{"gradient", 1}}}}}) {
         nlohmann::json p = parameters(channels(3));
         p[nlohmann::json::json_pointer(where)] = value;
         EXPECT_THROW((void)stage_.cast(volume, p, look_), Error) << where;

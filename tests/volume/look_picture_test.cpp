@@ -63,6 +63,26 @@ class LookPicture : public testing::Test {
     Stage stage_;
 };
 
+/// Opacity per reference length is a factor times the value: half of either is the same.
+TEST_F(LookPicture, accumulation_heeds_opacity_by_gradient) {
+    const LiveVolume volume(ramp_volume({1.0, -2.0, 0.5}));
+    const HostVolume given{"host", &volume};
+    const auto with = [&](double opacity, const json& gradient) {
+        return shot(stage_,
+                    scene({{"function", "accumulate"},
+                           {"accumulate", {{"opacity", opacity}}},
+                           {"transfer_function", {{"gradient", gradient}}}},
+                          camera_at({100.0, -320.0, 60.0})),
+                    std::span(&given, 1));
+    };
+    const json half{{{"gradient", 0}, {"factor", 0.5}}, {{"gradient", 10}, {"factor", 0.5}}};
+    const Difference off = difference(with(10.0, half), with(5.0, json::array()));
+    EXPECT_GT(off.seen, 200U);
+    EXPECT_LE(off.max, 1e-5);
+    const json steep{{{"gradient", 3}, {"factor", 0}}, {{"gradient", 10}, {"factor", 1}}};  // the ramp's: 2.3
+    EXPECT_EQ(difference(with(10.0, steep), with(0.0, json::array())).max, 0.0);
+}
+
 TEST_F(LookPicture, shading_is_blinn_phong_of_the_gradient_in_the_world) {
     const glm::dvec3 rise(1.0, -2.0, 0.5);
     const LiveVolume volume(ramp_volume(rise));
