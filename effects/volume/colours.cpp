@@ -31,8 +31,10 @@ void each_voxel(const Volume& volume, const VoxelBox& box, const Visit& visit) {
         for (int y = 0; y < box.size.y; ++y) {
             for (int x = 0; x < box.size.x; ++x) {
                 for (int c = 0; c < volume.channels; ++c) {
-                    values[static_cast<std::size_t>(c)] =
-                        volume.value_of(volume.stored(box.first + glm::ivec3(x, y, z), c));
+                    const double stored = volume.stored(box.first + glm::ivec3(x, y, z), c);
+                    values[static_cast<std::size_t>(c)] = is_number(stored)
+                                                              ? volume.value_of(stored)
+                                                              : std::numeric_limits<double>::quiet_NaN();
                 }
                 visit(count++, values);
             }
@@ -79,14 +81,47 @@ struct Colours : DerivedSource {
     Range range;
 };
 
+/// Which ends of the range a box has had, by the colours that were made of it; too many rather than too few.
+struct Ends {
+    bool low = false;
+    bool high = false;
+};
+Ends ends_in(const Volume& made, const VoxelBox& box) {
+    Ends ends;
+    each_voxel(made, box, [&](std::size_t, const std::array<double, 4>& shares) {
+        for (const double share : shares) {
+            ends.low = ends.low || share <= 0.0;
+            ends.high = ends.high || share >= 1.0;
+        }
+    });
+    return ends;
+}
+
+/// Whether all voxels may still have the range that the colours were made with.
+bool keeps_range(const Colours& made, const Volume& volume, std::span<const VoxelBox> changed) {
+    Ends lost;
+    Range now;
+    for (const VoxelBox& box : changed) {
+        const Ends had = ends_in(made.source().volume(), box);
+        const Range has = range_of(volume, box);
+        lost = {lost.low || had.low, lost.high || had.high};
+        now = {std::min(now.low, has.low), std::max(now.high, has.high)};
+    }
+    if (!made.range.holds(now)) {
+        return false;
+    }
+    if ((lost.low && now.low > made.range.low) || (lost.high && now.high < made.range.high)) {
+        now = range_of(volume, {glm::ivec3(0), volume.grid.dims});  // is it elsewhere, too?
+        return now.low == made.range.low && now.high == made.range.high;
+    }
+    return true;
+}
+
 void follow(Colours& made, const Source& voxels) {
     const Volume& volume = voxels.volume();
     bool everything = true;
     const std::vector<VoxelBox> changed = made.changes(voxels, everything);
-    everything = everything || !std::ranges::all_of(changed, [&](const VoxelBox& box) {
-                     return made.range.holds(range_of(volume, box));
-                 });
-    if (everything) {
+    if (everything || !keeps_range(made, volume, changed)) {
         const VoxelBox all{glm::ivec3(0), volume.grid.dims};
         made.range = range_of(volume, all);
         made.replace({.grid = volume.grid,

@@ -6,10 +6,7 @@ namespace viscera::volume {
 
 std::vector<VoxelBox> DerivedSource::changes(const Source& voxels, bool& everything) const {
     everything = true;
-    if (voxels.live == nullptr || version_ == 0) {
-        return {};
-    }
-    return voxels.live->changes_since(version_, everything);
+    return version_ == 0 ? std::vector<VoxelBox>{} : voxels.changes_since(version_, everything);
 }
 
 void DerivedSource::replace(Volume volume) {

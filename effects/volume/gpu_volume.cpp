@@ -185,7 +185,7 @@ std::vector<std::byte> texels(const Volume& volume, int channel, const VoxelBox&
             break;
     }
     return converted<float, float>(volume, channel, box, [fill = static_cast<float>(empty)](float stored) {
-        return std::isfinite(stored) ? stored : fill;
+        return is_number(stored) ? stored : fill;
     });
 }
 
@@ -267,8 +267,8 @@ void GpuVolume::update(const Source& source) {
     const Volume& volume = source.volume();
     bool everything = true;
     std::vector<VoxelBox> boxes;
-    if (source.live != nullptr && version_ != 0) {
-        boxes = source.live->changes_since(version_, everything);
+    if (version_ != 0) {
+        boxes = source.changes_since(version_, everything);
     }
     if (everything) {
         if (dims_ != volume.grid.dims || type_ != volume.type) {
@@ -276,10 +276,8 @@ void GpuVolume::update(const Source& source) {
         }
         boxes = {{glm::ivec3(0), dims_}};
     }
-    const double lowest = source.statistics.min;
-    const double empty = (lowest - volume.intercept) / volume.slope;
     for (const VoxelBox& box : boxes) {
-        upload(volume, box, empty);
+        upload(volume, box, source.filler());
     }
     version_ = source.version();
 }

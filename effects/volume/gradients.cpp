@@ -10,6 +10,7 @@
 #include "effects/volume/derived_source.h"
 #include "engine/core/error.h"
 #include "engine/core/hash.h"
+#include "engine/core/pixel_index.h"
 
 namespace viscera::volume {
 namespace {
@@ -40,7 +41,7 @@ class Slices {
         for (int y = 0; y < n.y; ++y) {
             for (int x = 0; x < n.x; ++x, ++i) {
                 const auto stored = static_cast<float>(volume_.stored({x, y, z}, channel_));
-                slice[i] = std::isfinite(stored) ? stored : empty_;
+                slice[i] = is_number(stored) ? stored : empty_;
             }
         }
     }
@@ -88,8 +89,27 @@ void each_gradient(const Volume& volume, int channel, float empty, const VoxelBo
 /// Gradients that follow the volume they are made from.
 struct Gradients : DerivedSource {
     using DerivedSource::DerivedSource;
-    float greatest = 0.0F;  ///< component
+    float greatest = 0.0F;  ///< component when all were last made; 32767 texel units
+    int top = 0;            ///< greatest component that there is still [texel units]
 };
+
+/// The greatest component in a box of what was made [texel units].
+int greatest_texel(const Volume& made, const VoxelBox& box) {
+    int greatest = 0;
+    for (int z = box.first.z; z < box.first.z + box.size.z; ++z) {
+        for (int y = box.first.y; y < box.first.y + box.size.y; ++y) {
+            const std::byte* at =
+                made.voxels.data() + voxel_index({box.first.x, y, z}, made.grid.dims) * sizeof(glm::i16vec4);
+            for (int x = 0; x < box.size.x; ++x, at += sizeof(glm::i16vec4)) {
+                glm::i16vec4 texel;
+                std::memcpy(&texel, at, sizeof texel);
+                greatest = std::max(
+                    {greatest, std::abs(int{texel.x}), std::abs(int{texel.y}), std::abs(int{texel.z})});
+            }
+        }
+    }
+    return greatest;
+}
 
 float greatest_in(const Volume& volume, int channel, float empty, const VoxelBox& box,
                   const Progress& progress) {
@@ -129,12 +149,26 @@ VoxelBox grown(const VoxelBox& box, const VolumeGrid& grid) {
 
 void follow(Assets& assets, Gradients& made, const Source& voxels, int channel) {
     const Volume& volume = voxels.volume();
-    const auto empty = static_cast<float>((voxels.statistics.min - volume.intercept) / volume.slope);
+    const auto empty = static_cast<float>(voxels.filler());
     bool everything = true;
     std::vector<VoxelBox> changed = made.changes(voxels, everything);
     for (VoxelBox& box : changed) {
         box = grown(box, volume.grid);
         everything = everything || greatest_in(volume, channel, empty, box, {}) > made.greatest;
+    }
+    const VoxelBox all{glm::ivec3(0), volume.grid.dims};
+    if (!everything) {
+        int lost = 0;
+        int gained = 0;
+        for (const VoxelBox& box : changed) {
+            lost = std::max(lost, greatest_texel(made.source().volume(), box));
+            made.update(box, encoded(volume, channel, empty, box, made.greatest, {}));
+            gained = std::max(gained, greatest_texel(made.source().volume(), box));
+        }
+        // A steep place that is gone would leave few steps to all others: two bits less are too few.
+        made.top = gained < made.top && lost >= made.top ? greatest_texel(made.source().volume(), all)
+                                                         : std::max(made.top, gained);
+        everything = made.greatest > 0.0F && made.top < static_cast<int>(most) / 4;
     }
     if (everything) {
         const Progress progress =
@@ -142,7 +176,6 @@ void follow(Assets& assets, Gradients& made, const Source& voxels, int channel) 
         const auto half = [&](double from) {
             return progress ? Progress([=](double done) { return progress(from + 0.5 * done); }) : Progress();
         };
-        const VoxelBox all{glm::ivec3(0), volume.grid.dims};
         made.greatest = greatest_in(volume, channel, empty, all, half(0.0));
         made.replace({.grid = volume.grid,
                       .type = ScalarType::i16,
@@ -150,10 +183,7 @@ void follow(Assets& assets, Gradients& made, const Source& voxels, int channel) 
                       .voxels = encoded(volume, channel, empty, all, made.greatest, half(0.5)),
                       .slope = made.greatest > 0.0F ? static_cast<double>(made.greatest) / most : 1.0,
                       .source = volume.source});
-    } else {
-        for (const VoxelBox& box : changed) {
-            made.update(box, encoded(volume, channel, empty, box, made.greatest, {}));
-        }
+        made.top = static_cast<int>(most);
     }
     made.settle(voxels, {});
 }

@@ -132,7 +132,7 @@ std::vector<float> stored_values(const Volume& volume, int channel, const VoxelB
             for (int x = 0; x < box.size.x; ++x) {
                 const auto stored =
                     static_cast<float>(volume.stored(box.first + glm::ivec3(x, y, z), channel));
-                result.push_back(std::isfinite(stored) ? stored : empty);
+                result.push_back(is_number(stored) ? stored : empty);
             }
         }
     }
@@ -220,7 +220,7 @@ std::vector<std::byte> interleaved(std::vector<std::vector<std::byte>> channels)
 
 void follow(Assets& assets, DerivedSource& coefficients, const Source& voxels, int wanted) {
     const Volume& volume = voxels.volume();
-    const auto empty = static_cast<float>((voxels.statistics.min - volume.intercept) / volume.slope);
+    const auto empty = static_cast<float>(voxels.filler());
     const glm::ivec3 dims = volume.grid.dims;
     const int first = wanted == all_channels ? 0 : wanted;
     const int end = wanted == all_channels ? volume.channels : wanted + 1;

@@ -65,8 +65,7 @@ std::shared_ptr<Bricks> load_bricks(Assets& assets, const Source& source, int ch
     }
     const std::uint64_t key = hash.value();
     const Volume& volume = source.volume();
-    const auto empty =
-        static_cast<float>((source.statistics.min - volume.intercept) / volume.slope);  // as in the texture
+    const auto empty = static_cast<float>(source.filler());  // as in the texture
     const std::shared_ptr<Bricks> bricks =
         assets.shared<Bricks>(key, [] { return std::make_shared<Bricks>(); });
     if (bricks->version == source.version()) {
@@ -74,8 +73,8 @@ std::shared_ptr<Bricks> load_bricks(Assets& assets, const Source& source, int ch
     }
     bool everything = true;
     std::vector<VoxelBox> changed;
-    if (source.live != nullptr && bricks->version != 0) {
-        changed = source.live->changes_since(bricks->version, everything);
+    if (bricks->version != 0) {
+        changed = source.changes_since(bricks->version, everything);
     }
     if (everything) {
         const Progress progress =

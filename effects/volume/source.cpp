@@ -51,12 +51,16 @@ std::shared_ptr<const Source> live_source(Assets& assets, const LiveVolume& live
         return source;
     }
     const Volume& volume = live.volume();
+    const double least = source->statistics.min;
     source->statistics = channel_statistics(volume, channel);
+    if (source->statistics.min != least && source->statistics.non_finite > 0) {
+        source->filler_version = live.version();
+    }
     if (const std::size_t count = source->statistics.non_finite; count > 0) {
-        assets.log().fault(
-            "volume.non_finite",
-            volume.source + ": " + std::to_string(count) + " voxels are NaN or infinite; they stay empty",
-            count);
+        assets.log().fault("volume.non_finite",
+                           volume.source + ": " + std::to_string(count) +
+                               " voxels are NaN, infinite or beyond 1e36; they stay empty",
+                           count);
     }
     source->live = &live;
     source->key = key;
@@ -68,6 +72,19 @@ std::shared_ptr<const Source> live_source(Assets& assets, const LiveVolume& live
 
 std::uint64_t Source::state_key() const {
     return Hash().add(key).add(version()).value();
+}
+
+double Source::filler() const {
+    const Volume& shown = volume();
+    return (statistics.min - shown.intercept) / shown.slope;
+}
+
+std::vector<VoxelBox> Source::changes_since(std::uint64_t version, bool& everything) const {
+    everything = true;
+    if (live == nullptr || version < filler_version) {
+        return {};
+    }
+    return live->changes_since(version, everything);
 }
 
 void SourceParams::visit(ParamVisitor& v) {

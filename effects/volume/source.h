@@ -35,12 +35,18 @@ struct Source {
     const LiveVolume* live = nullptr;     ///< or the host's
     VolumeStatistics statistics;
     std::uint64_t statistics_version = 0;  ///< of a host's volume when they were made
+    std::uint64_t filler_version = 0;      ///< of a host's volume when its filler last changed
     std::uint64_t key = 0;                 ///< of the file and how it was read, or of the host's object
 
     [[nodiscard]] const Volume& volume() const { return owned ? *owned : live->volume(); }
     [[nodiscard]] std::uint64_t version() const { return live == nullptr ? 1 : live->version(); }
     /// Of the voxels as they are now.
     [[nodiscard]] std::uint64_t state_key() const;
+    /// The stored number that stands for voxels that are no numbers: the least value's.
+    [[nodiscard]] double filler() const;
+    /// Boxes of a host's volume that have changed since it had another version. `everything`: all may have,
+    /// also because what fills voxels that are no numbers is another value.
+    [[nodiscard]] std::vector<VoxelBox> changes_since(std::uint64_t version, bool& everything) const;
 };
 
 /// Reads the file on first use. Null when the host gives no volume of the name. Throws Error(file),

@@ -117,7 +117,56 @@ TEST_F(LiveVolumes, BrokenVoxelsThatComeAndGo) {
     EXPECT_LT(largest(picture()), largest(whole));
     live.update({{0, 0, 0}, {8, 8, 8}}, was);
     expect_same(picture(), whole, "mended");
-    expect_said_once("volume.non_finite", "NaN or infinite");
+    expect_said_once("volume.non_finite", "NaN, infinite or beyond");
+}
+
+/// What is no number shows as the least value, also where that value changes elsewhere.
+TEST_F(LiveVolumes, BrokenVoxelsFollowTheLeastValue) {
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    for (const char* filter : {"linear", "bspline_fp32"}) {
+        Volume volume = make_volume(glm::ivec3(8), glm::dvec3(1.25), [](const glm::ivec3& i) {
+            return i == glm::ivec3(7) ? 10.0 : 80.0 + i.x;
+        });
+        LiveVolume live(std::move(volume));
+        live.update({{0, 0, 0}, {4, 8, 8}}, numbers(256, nan));
+        json parameters = ramp();
+        parameters["sampling"]["filter"] = filter;
+        parameters["shading"]["enabled"] = true;
+        const Image before = cast(live, parameters);
+        for (const float least : {70.0F, 5.0F}) {
+            live.update({{7, 7, 7}, {1, 1, 1}}, numbers(1, least));
+            const Image changed = picture();
+            EXPECT_GT(difference(changed, before), 0.01) << filter;
+            expect_same(changed, cast(LiveVolume(copy_of(live)), parameters), "as if it had always been so");
+            (void)cast(live, parameters);
+        }
+    }
+}
+
+/// Shares are of the range that all voxels have now, not of one that they once had.
+TEST_F(LiveVolumes, ColoursAreSharesOfTheRangeAsItIs) {
+    Volume volume = constant_volume(glm::ivec3(6), glm::dvec3(1.5), 100.0, ScalarType::u8);
+    volume.channels = 3;
+    volume.voxels.resize(volume.voxels.size() * 3, std::byte{40});
+    LiveVolume live(std::move(volume));
+    const json parameters{{"function", "accumulate"},
+                          {"accumulate", {{"channels", {json::object(), json::object(), json::object()}}}}};
+    const Image before = cast(live, parameters);
+    const auto paint = [&](const VoxelBox& box, int value) {
+        const auto count = static_cast<std::size_t>(3 * box.size.x * box.size.y * box.size.z);
+        live.update(box, std::vector<std::byte>(count, static_cast<std::byte>(value)));
+        const Image changed = picture();
+        expect_same(changed, cast(LiveVolume(copy_of(live)), parameters), "as if it had always been so");
+        (void)cast(live, parameters);
+        return changed;
+    };
+    const VoxelBox corner{{0, 0, 0}, {2, 1, 1}};
+    EXPECT_GT(difference(paint(corner, 250), before), 0.01);  // all others are darker now
+    (void)paint({{3, 3, 3}, {1, 1, 1}}, 250);                 // the greatest value twice
+    (void)paint(corner, 100);                                 // and once
+    (void)paint({{3, 3, 3}, {1, 1, 1}}, 100);                 // and nowhere
+    (void)paint(corner, 0);
+    (void)paint(corner, 90);
 }
 
 TEST_F(LiveVolumes, AHundredFramesHoldNoMore) {

@@ -104,6 +104,21 @@ TEST_F(KeptGradients, FollowALiveVolume) {
     EXPECT_LE(difference(after.image, fresh.cast(LiveVolume(head.volume()), p, look_).image).max, 2e-3);
 }
 
+/// A voxel far out of the range must not leave its steps to all others when it is gone.
+TEST_F(KeptGradients, AreFineAgainWhenASteepPlaceIsGone) {
+    LiveVolume noise(noise_volume(glm::ivec3(8), glm::dvec3(25.0), 9));
+    nlohmann::json p = parameters("composite", "precomputed");
+    p["transfer_function"]["points"] = {{{"value", 0}, {"opacity", 0.01}, {"colour", {0.9, 0.6, 0.5}}}};
+    const Shot before = stage_.cast(noise, p, look_);
+    const std::vector<std::byte> was(noise.volume().voxels.begin(), noise.volume().voxels.begin() + 4);
+    const float spike = 1e9F;
+    noise.update({glm::ivec3(0), glm::ivec3(1)}, std::as_bytes(std::span(&spike, 1)));
+    const Shot spiked = stage_.cast_again(noise, before.view, glm::ivec2(64));
+    EXPECT_GT(difference(before.image, spiked.image).max, 0.01);
+    noise.update({glm::ivec3(0), glm::ivec3(1)}, was);
+    EXPECT_TRUE(same_bits(stage_.cast_again(noise, before.view, glm::ivec2(64)), before));
+}
+
 /// Around rings, past the ends of sectors, and where a box that changes touches a seam.
 TEST_F(KeptGradients, OfSectorsAreCentralDifferencesAcrossTheSeam) {
     nlohmann::json p{{"transfer_function",
