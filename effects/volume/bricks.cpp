@@ -43,7 +43,7 @@ void load_inside(const Volume& volume, const glm::ivec3& first, int channel, flo
     }
     if constexpr (std::is_floating_point_v<T>) {
         for (T& value : row) {
-            value = std::abs(value) <= std::numeric_limits<T>::max() ? value : empty;
+            value = is_number(value) ? value : empty;
         }
     }
 }

@@ -97,8 +97,8 @@ double ExtinctionGrid::at(const glm::dvec3& texture) const {
 
 VoxelExtinction of_values(const Volume& volume, int channel, std::function<double(double value)> extinction) {
     return [&volume, channel, extinction = std::move(extinction)](const glm::ivec3& voxel) {
-        const double value = volume.value_of(volume.stored(voxel, channel));
-        return std::isfinite(value) ? extinction(value) : 0.0;
+        const double stored = volume.stored(voxel, channel);
+        return is_number(stored) ? extinction(volume.value_of(stored)) : 0.0;
     };
 }
 

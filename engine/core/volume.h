@@ -84,12 +84,21 @@ struct Volume {
     void validate() const;
 };
 
-/// What a volume's values are, rescaled; NaN and Inf are counted and left out.
+/// Whether a stored number is one that is shown: finite, and so far from the ends of single precision that
+/// filters can form sums and differences. Beyond lie what programs write where they have no value, such as
+/// the greatest float. What is no number is counted, reported, and stays empty.
+template <class T>
+[[nodiscard]] constexpr bool is_number(T stored) {
+    constexpr T greatest = static_cast<T>(1e36);
+    return stored >= -greatest && stored <= greatest;
+}
+
+/// What a volume's values are, rescaled; voxels that are no numbers are counted and left out.
 struct VolumeStatistics {
-    double min = 0.0;  ///< of the finite voxels; 0 when there are none
+    double min = 0.0;  ///< of the voxels that are numbers; 0 when there are none
     double max = 0.0;
     double mean = 0.0;
-    std::size_t non_finite = 0;
+    std::size_t non_finite = 0;          ///< voxels that are no numbers
     std::vector<std::size_t> histogram;  ///< equal bins over [min, max]
 };
 /// One channel. bins >= 1.

@@ -42,7 +42,7 @@ void add_row(const T* row, const Extent& from, std::size_t factor, RowSums& sums
         for (std::size_t i = x; i < end; ++i) {
             for (std::size_t c = 0; c < from.channels; ++c) {
                 const auto value = static_cast<double>(row[i * from.channels + c]);
-                if (std::isfinite(value)) {
+                if (is_number(value)) {
                     sums.sum[out * from.channels + c] += value;
                     ++sums.count[out * from.channels + c];
                 }

@@ -92,7 +92,7 @@ void resample(const Volume& volume, const std::array<std::vector<Window>, 3>& wi
                                                       inside(x.first + static_cast<int>(i), from.x);
                             for (std::size_t c = 0; c < channels; ++c) {
                                 const auto value = static_cast<double>(in[voxel * channels + c]);
-                                const double weight = std::isfinite(value) ? row_weight * x.weight[i] : 0.0;
+                                const double weight = is_number(value) ? row_weight * x.weight[i] : 0.0;
                                 sum[c] += weight > 0.0 ? weight * value : 0.0;
                                 whole[c] += weight;
                             }

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <limits>
 #include <tuple>
@@ -78,7 +77,7 @@ VolumeStatistics of_floats(const Volume& volume, int channel, int bins) {
     double sum = 0.0;
     std::size_t finite = 0;
     for_each<float>(volume, channel, [&](float value) {
-        if (std::isfinite(value)) {
+        if (is_number(value)) {
             low = std::min(low, value);
             high = std::max(high, value);
             sum += static_cast<double>(value);
@@ -94,7 +93,7 @@ VolumeStatistics of_floats(const Volume& volume, int channel, int bins) {
     }
     Binner binner(result, bins);
     for_each<float>(volume, channel, [&](float value) {
-        if (std::isfinite(value)) {
+        if (is_number(value)) {
             binner.add(volume.value_of(static_cast<double>(value)), 1);
         }
     });

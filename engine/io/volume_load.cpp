@@ -79,12 +79,12 @@ void count_non_finite(const Volume& volume, Log& log) {
     for (std::size_t at = 0; at < volume.voxels.size(); at += sizeof(float)) {
         float value = 0.0F;
         std::memcpy(&value, volume.voxels.data() + at, sizeof value);
-        count += std::isfinite(value) ? 0 : 1;
+        count += is_number(value) ? 0 : 1;
     }
     if (count > 0) {
         log.fault(
             "volume.non_finite",
-            volume.source + ": " + std::to_string(count) + " voxels are NaN or infinite; they stay empty",
+            volume.source + ": " + std::to_string(count) + " voxels are NaN, infinite or beyond 1e36; they stay empty",
             count);
     }
 }
