@@ -23,6 +23,7 @@ struct BenchArguments {
     std::filesystem::path scene;
     std::vector<std::string> overrides;
     std::filesystem::path pixels;
+    std::filesystem::path glsl;
     bool list = false;
 };
 
@@ -63,7 +64,8 @@ int bench(const BenchArguments& arguments) {
                        .height = height,
                        .repeats = arguments.repeats,
                        .log = stderr_log(),
-                       .compute = arguments.compute.value()});
+                       .compute = arguments.compute.value(),
+                       .glsl = arguments.glsl});
     for (const Case* one : chosen) {
         std::cerr << "bench: " << one->name << '\n';
         const std::size_t before = lab.rows().size();
@@ -123,6 +125,8 @@ void add_bench(CLI::App& app, int& exit_code) {
         ->add_option("--pixels", arguments->pixels,
                      "writes the first output of --scene as float32, top row first")
         ->needs(scene);
+    command->add_option("--glsl", arguments->glsl,
+                        "reads shaders from this folder in place of those in the binary");
     command->add_flag("--list", arguments->list, "names the cases and stops");
     command->callback([arguments, &exit_code] { exit_code = bench(*arguments); });
 }

@@ -52,6 +52,16 @@ nlohmann::json Lab::empty_scene() const {
     return scene;
 }
 
+ShaderReader Lab::shaders() const {
+    if (options_.glsl.empty()) {
+        return bench_shaders();
+    }
+    return [own = shader_reader_from_folder(options_.glsl), others = bench_shaders()](std::string_view name) {
+        std::optional<std::string> text = own(name);
+        return text ? text : others(name);
+    };
+}
+
 void Lab::add(Row row) {
     rows_.push_back(std::move(row));
 }
@@ -62,7 +72,7 @@ Stage::Stage(Lab& lab, const nlohmann::json& scene, Options options)
 
 Stage::Stage(Lab& lab, Scene scene, Options options) : lab_(lab), options_(std::move(options)) {
     RendererOptions made{.log = lab.options().log,
-                         .shaders = options_.shaders ? options_.shaders : bench_shaders(),
+                         .shaders = options_.shaders ? options_.shaders : lab.shaders(),
                          .timers = false,
                          .compute = options_.compute.value_or(lab.options().compute)};
     if (options_.by_pass) {

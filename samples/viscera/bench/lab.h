@@ -43,6 +43,7 @@ class Lab {
         int repeats = 20;
         LogCallback log;
         ComputeUse compute = ComputeUse::automatic;
+        std::filesystem::path glsl;  ///< shaders there come before those in the binary; empty: none do
     };
     Lab(Context& context, Options options);
 
@@ -51,6 +52,7 @@ class Lab {
     [[nodiscard]] const Options& options() const { return options_; }
     [[nodiscard]] const Registry& registry() const { return registry_; }
     [[nodiscard]] ProcAddress proc() const { return context_.proc_address(); }
+    [[nodiscard]] ShaderReader shaders() const;
     /// Times come from the GPU's clock; otherwise from the wall's, with glFinish.
     [[nodiscard]] bool hardware() const { return capabilities_.gpu_timers(); }
 
