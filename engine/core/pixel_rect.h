@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 
 namespace viscera {
@@ -47,6 +48,24 @@ struct PixelRect {
     const int bottom = std::clamp(rect.y, 0, height);
     return {left, bottom, std::clamp(rect.x + rect.width, left, width) - left,
             std::clamp(rect.y + rect.height, bottom, height) - bottom};
+}
+
+/// The part of a rectangle that lies outside another, in four rectangles that do not overlap; some may be
+/// empty.
+[[nodiscard]] inline std::array<PixelRect, 4> outside(const PixelRect& rect, const PixelRect& hole) {
+    if (!overlap(rect, hole)) {
+        return {rect};
+    }
+    const int top = rect.y + rect.height;
+    const int right = rect.x + rect.width;
+    const int low = std::max(rect.y, hole.y);
+    const int high = std::min(top, hole.y + hole.height);
+    const int left_end = std::max(rect.x, hole.x);
+    const int right_begin = std::min(right, hole.x + hole.width);
+    return {{{rect.x, rect.y, rect.width, low - rect.y},
+             {rect.x, high, rect.width, top - high},
+             {rect.x, low, left_end - rect.x, high - low},
+             {right_begin, low, right - right_begin, high - low}}};
 }
 
 }  // namespace viscera

@@ -36,8 +36,8 @@ struct Port {
     /// asks for it.
     bool optional = false;
     std::string passthrough;  ///< for a write: the read port that stands in for it while the pass is idle
-    bool overwrites =
-        false;  ///< for a write: draw() sets every pixel of the region, so nothing need be cleared before
+    /// For a write: draw() sets every pixel of the region, so that nothing need be cleared there before.
+    bool overwrites = false;
     /// For a write of colour beside a new depth: draw() sets colour only where it sets a depth below 1. Then
     /// what stays uncovered may get its clear value afterwards, which is less than all.
     bool behind_depth = false;

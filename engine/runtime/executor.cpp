@@ -167,7 +167,7 @@ bool Executor::draw(std::size_t p) {
         settle(settlement);
     }
     target.bind();
-    const Cleared cleared = clear(state, pass, target, region.bounds());
+    const Cleared cleared = clear(state, pass, target, region);
     const Pass view(shared_, frames_[state.frame], state.programs, state.inputs, state.outputs, target, size,
                     region, cleared.kept);
     view.raster(gl::overwrite_state);

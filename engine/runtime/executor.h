@@ -98,11 +98,14 @@ class Executor {
         std::array<float, 4> value{};
     };
     [[nodiscard]] Cleared clear(PassState& state, const PlanPass& pass, const gl::Framebuffer& target,
-                                const PixelRect& region);
+                                const PixelRegion& region);
     [[nodiscard]] bool holds_last(const PassState& state, const PlanPass& pass);
     [[nodiscard]] bool fills_after(const PassState& state, const PlanPass& pass, std::size_t binding) const;
     [[nodiscard]] bool is_new(const PassState& state, const PlanBinding& binding) const;
     void fill(const gl::Framebuffer& target, const Cleared& cleared) const;
+    [[nodiscard]] bool costs_all(const gl::Framebuffer& target, std::int64_t area) const;
+    void clear_outside(const gl::Framebuffer& target, int index, const std::array<float, 4>& value,
+                       const PixelRect& part, const PixelRect& set) const;
     void clear_part(const gl::Framebuffer& target, int index, const std::array<float, 4>& value,
                     const PixelRect& part) const;
 

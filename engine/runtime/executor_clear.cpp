@@ -85,8 +85,9 @@ void Executor::fill(const gl::Framebuffer& target, const Cleared& cleared) const
 }
 
 Executor::Cleared Executor::clear(PassState& state, const PlanPass& pass, const gl::Framebuffer& target,
-                                  const PixelRect& region) {
+                                  const PixelRegion& drawn) {
     Cleared cleared;
+    const PixelRect region = drawn.bounds();
     const PixelRect all{0, 0, target.width(), target.height()};
     cleared.kept = state.work.goes_on && holds_last(state, pass);
     int colour = 0;
@@ -102,8 +103,9 @@ Executor::Cleared Executor::clear(PassState& state, const PlanPass& pass, const 
         }
         const PlanContent& content = plan_.contents[*binding.content];
         const bool continues = !is_new(state, binding);
-        const bool overwritten =
-            state.ports[state.port_of_binding[b]].overwrites && state.work.kind == Work::Kind::all;
+        const bool overwrites = state.ports[state.port_of_binding[b]].overwrites;
+        const bool overwritten = overwrites && state.work.kind == Work::Kind::all;
+        const bool sets_region = overwrites && drawn.rects().size() == 1;
         TargetPool::Backdrop unknown;
         TargetPool::Backdrop& backdrop = content.texture ? pool_.backdrop(*content.texture) : unknown;
         state.drawn_keys[b] = schedule_.contents()[*binding.content].key;
@@ -118,6 +120,8 @@ Executor::Cleared Executor::clear(PassState& state, const PlanPass& pass, const 
         if (fills_after(state, pass, b)) {
             cleared.uncovered = around(part, region);
             cleared.value = stored(content);
+        } else if (sets_region) {
+            clear_outside(target, index, stored(content), part, region);
         } else {
             clear_part(target, index, stored(content), part);
         }
@@ -126,17 +130,35 @@ Executor::Cleared Executor::clear(PassState& state, const PlanPass& pass, const 
     return cleared;
 }
 
+/// Whether a clear of so many pixels takes as long as one of the whole target.
+bool Executor::costs_all(const gl::Framebuffer& target, std::int64_t area) const {
+    const double share = static_cast<double>(area) / (static_cast<double>(target.width()) * target.height());
+    return share * (capabilities_.software ? software_clear_gain : 1.0) >= 1.0;
+}
+
+/// Clears a part but for the pixels that are set anyway.
+void Executor::clear_outside(const gl::Framebuffer& target, int index, const std::array<float, 4>& value,
+                             const PixelRect& part, const PixelRect& set) const {
+    std::int64_t area = 0;
+    for (const PixelRect& rect : outside(part, set)) {
+        area += rect.area();
+    }
+    if (costs_all(target, area)) {
+        return clear_part(target, index, value, part);
+    }
+    for (const PixelRect& rect : outside(part, set)) {
+        clear_part(target, index, value, rect);
+    }
+}
+
 /// index: of a colour, or -1 for depth.
 void Executor::clear_part(const gl::Framebuffer& target, int index, const std::array<float, 4>& value,
                           const PixelRect& part) const {
-    const double share = static_cast<double>(part.width) * part.height /
-                         (static_cast<double>(target.width()) * target.height());
-    const bool whole = share * (capabilities_.software ? software_clear_gain : 1.0) >= 1.0;
     if (part.empty()) {
         return;
     }
     gl::RasterState state = gl::depth_tested_state;
-    if (!whole) {
+    if (!costs_all(target, part.area())) {
         state.scissor = gl::Rect{part.x, part.y, part.width, part.height};
     }
     gl::apply(shared_.gl, state, {0, 0, target.width(), target.height()});

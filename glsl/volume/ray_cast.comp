@@ -1,7 +1,7 @@
 #version 430 core
 #include "common/compute.glsl"
 #include "volume/ray_cast_body.glsl"
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = 8, local_size_y = 4) in;
 
 void main() {
     ivec2 pixel;

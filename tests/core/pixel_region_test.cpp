@@ -95,5 +95,24 @@ TEST(ChangeLog, ForgetsTheOldest) {
     EXPECT_FALSE(log.between(150, 199)) << "copying all is cheaper than so long a way";
 }
 
+TEST(PixelRect, OutsideHoldsEachPixelBesideTheHoleOnce) {
+    const PixelRect rect{2, 3, 3, 2};
+    for (int seed = 0; seed < 7 * 7 * 5 * 5; ++seed) {
+        const PixelRect hole{seed % 7, seed / 7 % 7, seed / 49 % 5, seed / 245};
+        const auto has = [](const PixelRect& r, int x, int y) { return overlap(r, {x, y, 1, 1}); };
+        for (int y = 0; y < 9; ++y) {
+            for (int x = 0; x < 9; ++x) {
+                int held = 0;
+                for (const PixelRect& part : outside(rect, hole)) {
+                    held += has(part, x, y) ? 1 : 0;
+                }
+                ASSERT_EQ(held, has(rect, x, y) && !has(hole, x, y) ? 1 : 0)
+                    << "at " << x << "," << y << " hole " << hole.x << "," << hole.y << " " << hole.width
+                    << " x " << hole.height;
+            }
+        }
+    }
+}
+
 }  // namespace
 }  // namespace viscera

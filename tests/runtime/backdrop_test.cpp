@@ -34,6 +34,40 @@ TEST_P(BackdropTest, ADrawnPartThatMovesLeavesNoTrace) {
     }
 }
 
+/// A pass that sets all of its region costs no clear but beside it.
+TEST_P(BackdropTest, ARegionThatIsSetAnywayIsNotCleared) {
+    Recipe square;
+    square.ports = {write_port("out", "x", -1.0F)};
+    square.ports[0].overwrites = true;
+    square.prepare = [](Prepare& prepare, double) {
+        const int at = static_cast<int>(prepare.frame().index);
+        return Work::in_region({at, at, 3, 2}, "a square that moves", 0);
+    };
+    square.draw = [](const Pass& pass, double value) {
+        // Breaks its word in the third frame, which shows what it found.
+        if (pass.frame().index != 2) {
+            draw_fill(pass, value + static_cast<double>(pass.frame().index));
+        }
+    };
+    add("square", square);
+    renderer().set_scene(make_scene({{"square", 5.0}}, {"x"}, 32, 16));
+    for (int index = 0; index < 4; ++index) {
+        render(static_cast<std::uint64_t>(index));
+        const Image image = renderer().read("x");
+        const auto in_square = [](int x, int y, int at) {
+            return x >= at && x < at + 3 && y >= at && y < at + 2;
+        };
+        for (int y = 0; y < image.height; ++y) {
+            for (int x = 0; x < image.width; ++x) {
+                const float found = in_square(x, y, index - 1) ? 4.0F + static_cast<float>(index) : -1.0F;
+                const float set = index == 2 ? found : 5.0F + static_cast<float>(index);
+                EXPECT_EQ(image.at(x, y, 0), in_square(x, y, index) ? set : -1.0F)
+                    << "frame " << index << " at " << x << "," << y;
+            }
+        }
+    }
+}
+
 /// Contents that take turns in one texture do not show through each other.
 TEST_P(BackdropTest, AWholePictureThatStoodThereBeforeIsGone) {
     add("pixel", one_pixel("y", 0.0F));
