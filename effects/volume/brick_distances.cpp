@@ -135,10 +135,14 @@ class Rows {
             visit(x);
         }
     }
+    /// As texels have them, so that a size only has to be added.
     void copy_kinds(const std::uint8_t* kinds, std::uint8_t* row) const {
-        std::fill_n(row - room, room, kinds[0]);
-        std::copy_n(kinds, dims_.x, row);
-        std::fill_n(row + dims_.x, padded_ - dims_.x + room, kinds[dims_.x - 1]);
+        const int count = dims_.x;  // a member could be among the bytes written, for all the compiler knows
+        for (int x = 0; x < count; ++x) {
+            row[x] = static_cast<std::uint8_t>(kind_step * kinds[x]);
+        }
+        std::fill_n(row - room, room, row[0]);
+        std::fill_n(row + dims_.x, padded_ - dims_.x + room, row[dims_.x - 1]);
     }
     /// What lies behind a row's last brick in the same lanes is room, too.
     void clear_end(std::uint8_t* sizes) const {
@@ -146,7 +150,7 @@ class Rows {
     }
 
   private:
-    static constexpr int room = lanes + distance_reach;
+    static constexpr int room = std::max(lanes, distance_reach / 2 + 1);  ///< as far as one step looks
 
     glm::ivec3 dims_;
     int padded_;  ///< bricks of a row in whole lanes
@@ -266,33 +270,36 @@ void distance_to_others(glm::ivec3 dims, std::span<const std::uint8_t> kinds, in
     });
 }
 
-void sizes_ahead(glm::ivec3 dims, std::span<const std::uint8_t> kinds, std::vector<std::uint8_t>& texels,
-                 AheadScratch& scratch) {
-    texels.resize(8 * checked_count(dims, kinds));
-    if (kinds.empty()) {
-        return;
-    }
-    const Rows rows(dims);
-    scratch.kinds.resize(rows.bytes(dims.z));
-    scratch.along.assign(rows.bytes(dims.z), distance_reach);
-    scratch.sizes.assign(rows.bytes(2), distance_reach);
-    each_row(dims, [&](int y, int z) {
-        rows.copy_kinds(&kinds[voxel_index({0, y, z}, dims)], rows.row(scratch.kinds.data(), y, z));
+void CubesAhead::take(glm::ivec3 dims, std::span<const std::uint8_t> kinds) {
+    dims_ = checked_count(dims, kinds) == 0 ? glm::ivec3(0) : dims;
+    along_known_ = {};
+    texels_.resize(kinds.size());
+    const Rows rows(dims_);
+    kinds_.resize(rows.bytes(dims_.z));
+    sizes_.assign(rows.bytes(2), distance_reach);
+    each_row(dims_, [&](int y, int z) {
+        rows.copy_kinds(&kinds[voxel_index({0, y, z}, dims_)], rows.row(kinds_.data(), y, z));
     });
-    for (int way = 0; way < 8; ++way) {
-        const glm::ivec3 half(way / 4, way % 2, way / 2 % 2);
-        if (way % 4 == 0) {
-            find_along(dims, rows, scratch.kinds.data(), half.x == 1 ? 1 : -1, scratch.along.data());
-        }
-        sizes_one_way(dims, rows, scratch.kinds.data(), scratch.along.data(), glm::bvec3(half),
-                      scratch.sizes.data(), [&](int y, int z, const Row& row) {
-                          std::uint8_t* target =
-                              &texels[voxel_index(glm::ivec3(0, y, z) + half * dims, 2 * dims)];
-                          for (int x = 0; x < dims.x; ++x) {
-                              target[x] = static_cast<std::uint8_t>(kind_step * row.kinds[x] + row.sizes[x]);
-                          }
-                      });
+}
+
+std::span<const std::uint8_t> CubesAhead::texels(const glm::bvec3& up) {
+    const Rows rows(dims_);
+    const std::size_t side = up.x ? 1 : 0;
+    std::vector<std::uint8_t>& along = along_[side];
+    if (!along_known_[side]) {
+        along.assign(rows.bytes(dims_.z), distance_reach);
+        find_along(dims_, rows, kinds_.data(), up.x ? 1 : -1, along.data());
+        along_known_[side] = true;
     }
+    sizes_one_way(dims_, rows, kinds_.data(), along.data(), up, sizes_.data(),
+                  [&](int y, int z, const Row& row) {
+                      std::uint8_t* target = &texels_[voxel_index({0, y, z}, dims_)];
+                      const int count = dims_.x;  // as in copy_kinds()
+                      for (int x = 0; x < count; ++x) {
+                          target[x] = static_cast<std::uint8_t>(row.kinds[x] + row.sizes[x]);
+                      }
+                  });
+    return texels_;
 }
 
 }  // namespace viscera::volume

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -25,18 +26,26 @@ struct DistanceScratch {
 void distance_to_others(glm::ivec3 dims, std::span<const std::uint8_t> kinds, int kind,
                         std::vector<std::uint8_t>& distance, DistanceScratch& scratch);
 
-struct AheadScratch {
-    std::vector<std::uint8_t> kinds, along, sizes;
-};
-
 /// The same with only those bricks looked at that lie ahead of a straight ray: for each brick the size of the
 /// largest cube, up to `distance_reach`, that begins at it, goes on in the ray's direction along every axis,
-/// and holds no brick of another kind. What lies behind a ray then does not make its leaps short.
-///
-/// `texels`: kind_step * kind + size, in a box of twice the bricks along each axis, x fastest. Its half along
-/// an axis is the lower one for rays that go down along it, the upper one for those that go up. `kinds`: one
-/// byte a brick, x fastest, less than 8. Throws Error(usage) when their number is not that of the grid.
-void sizes_ahead(glm::ivec3 dims, std::span<const std::uint8_t> kinds, std::vector<std::uint8_t>& texels,
-                 AheadScratch& scratch);
+/// and holds no brick of another kind. What lies behind a ray then does not make its leaps short. Room is
+/// kept, so that nothing is allocated from the second time on.
+class CubesAhead {
+  public:
+    /// `kinds`: one byte a brick, x fastest, less than 8. Throws Error(usage) when their number is not that
+    /// of the grid.
+    void take(glm::ivec3 dims, std::span<const std::uint8_t> kinds);
+    /// kind_step * kind + size, one byte a brick, for rays that go up along the axes of which `up` says so,
+    /// and down along the others. Holds until the next call.
+    [[nodiscard]] std::span<const std::uint8_t> texels(const glm::bvec3& up);
+
+  private:
+    glm::ivec3 dims_{0};
+    std::vector<std::uint8_t> kinds_;
+    std::array<std::vector<std::uint8_t>, 2> along_;  ///< down, up
+    std::array<bool, 2> along_known_{};
+    std::vector<std::uint8_t> sizes_;
+    std::vector<std::uint8_t> texels_;
+};
 
 }  // namespace viscera::volume

@@ -223,6 +223,22 @@ VoxelBox touched_of(const BrickGrid& bricks, const VoxelBox& row, const glm::ive
 
 }  // namespace
 
+int brick_size_for(const glm::ivec3& dims) {
+    constexpr int least = 3;
+    constexpr double most_bricks = 1 << 21;
+    constexpr int most_along_axis = 1024;
+    const auto fits = [&](int size) {
+        const glm::ivec3 bricks = (dims - 1) / size + 1;
+        return std::max({bricks.x, bricks.y, bricks.z}) <= most_along_axis &&
+               static_cast<double>(bricks.x) * bricks.y * bricks.z <= most_bricks;
+    };
+    int size = least;
+    while (!fits(size)) {
+        ++size;
+    }
+    return size;
+}
+
 BrickGrid summarise(const Volume& volume, int channel, int size, int border, float empty,
                     const Progress& progress) {
     check(volume, channel, size, border);

@@ -33,6 +33,12 @@ struct BrickGrid {
     [[nodiscard]] std::size_t count() const { return min.size(); }
 };
 
+/// Voxels per brick and axis for a Cartesian volume of this size: small ones leave out more, but what can be
+/// seen in them is to be found anew within a frame, and a texture holds twice as many along each axis.
+[[nodiscard]] int brick_size_for(const glm::ivec3& dims);
+/// For curvilinear volumes, in which each leap costs as much as two or three slabs.
+inline constexpr int curvilinear_brick_size = 4;
+
 /// Ranges of one channel of a volume, in stored units as float; voxels that are not finite count as `empty`
 /// (finite). Progress is told after each layer of bricks. Throws Error(usage) for a channel that is not
 /// there, size < 1 or border < 0, and Error(usage) "cancelled".

@@ -155,8 +155,8 @@ void RayCastEffect::draw(const Pass& pass) {
         program.set("u_occupied_low", glm::vec3(occupied.first));
         program.set("u_occupied_high", glm::vec3(occupied.first + occupied.size));
         program.set("u_bricks_per_unit",
-                    glm::vec3(glm::dvec3(volume.grid.dims) / static_cast<double>(brick_size)));
-        pass.bind(program, "u_bricks", skip_map_.texture(pass.gl()), gl::Filter::nearest);
+                    glm::vec3(glm::dvec3(volume.grid.dims) / static_cast<double>(brick_size_)));
+        pass.bind(program, "u_bricks", skip_map_.texture(pass.gl(), ways_of(frame)), gl::Filter::nearest);
     }
     if (params_.sampling.limits != Limits::analytic) {
         pass.bind(program, "u_entry", "entry");

@@ -27,7 +27,6 @@ class RayCastEffect final : public Effect {
     void draw(const Pass& pass) override;
 
   private:
-    static constexpr int brick_size = 4;  ///< [voxels]
     /// `adaptive`: also takes long slabs where the transfer function hardly changes.
     enum class Skipping { none, empty, adaptive };
     /// What the programs differ in besides the parameters.
@@ -88,6 +87,7 @@ class RayCastEffect final : public Effect {
     int sampled_channel_ = 0;
     TransferFunction function_;
     std::array<std::shared_ptr<Bricks>, 4> bricks_;  ///< of the channel, or of each colour
+    int brick_size_ = 1;                             ///< [voxels]
     SkipMap skip_map_;
     std::vector<StoredRange> visible_;  ///< what visible() and smooth_rule() gave; of colours, one a channel
     SmoothRule smooth_;

@@ -88,7 +88,7 @@ SmoothRule RayCastEffect::smooth_rule() const {
     }
     return make_smooth_rule(extinction_knots(function_, map, {std::min(a, b), std::max(a, b)}),
                             std::min(a, b), std::max(a, b), diagonal_mm, params_.sampling.tolerance,
-                            lattice_.slab_mm / (brick_size * voxel_spacing_mm(space_)));
+                            lattice_.slab_mm / (brick_size_ * voxel_spacing_mm(space_)));
 }
 
 /// Finds which bricks show anything; false when none does.
@@ -97,6 +97,7 @@ bool RayCastEffect::find_bricks(Prepare& prepare) {
     if (!params_.sampling.skip) {
         return true;
     }
+    brick_size_ = space_.shape.curvilinear() ? curvilinear_brick_size : brick_size_for(space_.dims);
     // The rule knows of the transfer function alone.
     const bool adaptive = params_.sampling.tolerance > 0.0 && !projects() && !shows_colours() &&
                           !params_.look.used(variant_.look);
@@ -119,7 +120,7 @@ bool RayCastEffect::find_bricks(Prepare& prepare) {
         // The four values that surfaces are looked for with span the slab. Places have rounding errors.
         const double share =
             variant_.function == RayFunction::isosurface ? 0.5 : reach_share(params_.sampling);
-        rows = brick_rows(space_, brick_size, std::max(share, 0.01) * lattice_.slab_local,
+        rows = brick_rows(space_, brick_size_, std::max(share, 0.01) * lattice_.slab_local,
                           filter.support_voxels());
     }
     std::array<BrickLayer, 4> layers;
@@ -128,7 +129,7 @@ bool RayCastEffect::find_bricks(Prepare& prepare) {
     hash.add(visible_key);
     for (std::size_t i = 0; i < count; ++i) {
         const int channel = shows_colours() ? static_cast<int>(i) : sampled_channel_;
-        bricks_[i] = load_bricks(prepare.assets(), *sampled_, channel, brick_size, border, rows);
+        bricks_[i] = load_bricks(prepare.assets(), *sampled_, channel, brick_size_, border, rows);
         hash.add(bricks_[i].get()).add(bricks_[i]->version);
         layers[i] = {&bricks_[i]->grid, visible_};
         if (shows_colours()) {
@@ -153,7 +154,7 @@ bool RayCastEffect::find_bricks(Prepare& prepare) {
 Bounds RayCastEffect::seen_bounds(Bounds bounds) const {
     // An X-ray shows the whole box: what absorbs nothing is let through.
     if (variant_.skipping != Skipping::none && variant_.function != RayFunction::xray) {
-        const glm::vec3 bricks = glm::vec3(source_->volume().grid.dims) / static_cast<float>(brick_size);
+        const glm::vec3 bricks = glm::vec3(source_->volume().grid.dims) / static_cast<float>(brick_size_);
         const VoxelBox& occupied = skip_map_.occupied_box();
         const FrameBox box = space_.box_of(glm::vec3(occupied.first) / bricks,
                                            glm::vec3(occupied.first + occupied.size) / bricks);

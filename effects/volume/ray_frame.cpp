@@ -67,4 +67,26 @@ RayFrame make_ray_frame(const View& view, const glm::dmat4& local_to_world, cons
     return frame;
 }
 
+Ways ways_of(const RayFrame& frame) {
+    const glm::vec3 turn = glm::abs(frame.direction[1]) + glm::abs(frame.direction[2]);
+    const glm::vec3 slack = 1e-5F * (glm::abs(frame.direction[0]) + turn);
+    glm::bvec3 up;
+    glm::bvec3 down;
+    for (int axis = 0; axis < 3; ++axis) {
+        // Where there is no telling, both.
+        up[axis] = !(frame.direction[0][axis] + turn[axis] < -slack[axis]);
+        down[axis] = !(frame.direction[0][axis] - turn[axis] > slack[axis]);
+    }
+    Ways ways;
+    for (std::size_t way = 0; way < ways.size(); ++way) {
+        const glm::bvec3 rises = up_along(way);
+        bool goes = true;
+        for (int axis = 0; axis < 3; ++axis) {
+            goes = goes && (rises[axis] ? up[axis] : down[axis]);
+        }
+        ways[way] = goes;
+    }
+    return ways;
+}
+
 }  // namespace viscera::volume

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <bitset>
 
 #include <glm/glm.hpp>
 
@@ -26,5 +27,15 @@ struct RayFrame {
 [[nodiscard]] RayFrame make_ray_frame(const View& view, const glm::dmat4& local_to_world,
                                       const glm::dvec3& low = glm::dvec3(0.0),
                                       const glm::dvec3& high = glm::dvec3(1.0));
+
+/// Which of the eight ways rays go: element x + 2 y + 4 z is of those that go up along the axes that are 1 in
+/// it.
+using Ways = std::bitset<8>;
+/// Along which axes rays of a way go up.
+[[nodiscard]] inline glm::bvec3 up_along(std::size_t way) {
+    return {way % 2 != 0, way / 2 % 2 != 0, way / 4 != 0};
+}
+/// Every way that a ray of the picture may go, whichever way its direction is rounded.
+[[nodiscard]] Ways ways_of(const RayFrame& frame);
 
 }  // namespace viscera::volume

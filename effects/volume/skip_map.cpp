@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <functional>
 #include <numbers>
 
 #include "engine/core/hash.h"
+#include "engine/core/pixel_index.h"
 
 namespace viscera::volume {
 
@@ -134,22 +136,29 @@ void find_levels(const BrickGrid& bricks, const SmoothRule& rule, float overshoo
     }
 }
 
-/// Box around the bricks that are not 0.
+/// Box around the bricks that are 1.
 VoxelBox box_around(glm::ivec3 dims, std::span<const std::uint8_t> occupied) {
     glm::ivec3 low = dims;
     glm::ivec3 high(-1);
-    const auto width = static_cast<std::size_t>(dims.x);
-    std::size_t row = 0;
     for (int z = 0; z < dims.z; ++z) {
-        for (int y = 0; y < dims.y; ++y, row += width) {
-            const auto bricks = occupied.subspan(row, width);
-            const auto first = std::ranges::find(bricks, std::uint8_t{1});
-            if (first == bricks.end()) {
+        for (int y = 0; y < dims.y; ++y) {
+            const std::uint8_t* row = &occupied[voxel_index({0, y, z}, dims)];
+            // The first occupied brick of the row from x on, or -1: by far the fastest way to go through
+            // bytes.
+            const auto next = [&](int x) {
+                const void* found = std::memchr(row + x, 1, static_cast<std::size_t>(dims.x - x));
+                return found == nullptr ? -1
+                                        : static_cast<int>(static_cast<const std::uint8_t*>(found) - row);
+            };
+            const int first = next(0);
+            if (first < 0) {
                 continue;
             }
-            const auto last = std::find(bricks.rbegin(), bricks.rend(), std::uint8_t{1});
-            low = glm::min(low, glm::ivec3(first - bricks.begin(), y, z));
-            high = glm::max(high, glm::ivec3(dims.x - 1 - (last - bricks.rbegin()), y, z));
+            low = glm::min(low, glm::ivec3(first, y, z));
+            high = glm::max(high, glm::ivec3(first, y, z));
+            for (int x = next(high.x + 1); x >= 0; x = next(x + 1)) {
+                high.x = x;
+            }
         }
     }
     return high.x < 0 ? VoxelBox{} : VoxelBox{low, high - low + 1};
@@ -177,7 +186,7 @@ void SkipMap::update(std::span<const BrickLayer> layers, const VoxelBox& crop, c
     any_smooth_ = kinds > 2;
     curved_ = bricks.rows.angle_axis >= 0;
     if (!curved_) {
-        return sizes_ahead(dims_, kind_, texels_, ahead_);
+        return ahead_.take(dims_, kind_);
     }
     for (int kind = 0; kind < kinds; ++kind) {
         distance_to_others(dims_, kind_, kind, texels_, scratch_);
@@ -219,7 +228,7 @@ int SkipMap::find_smooth(const BrickGrid& bricks, const SmoothRule& rule, float 
     return kinds;
 }
 
-const gl::Texture& SkipMap::texture(const gl::Functions& gl) {
+const gl::Texture& SkipMap::texture(const gl::Functions& gl, const Ways& ways) {
     const int blocks = curved_ ? 1 : 2;
     const gl::Extent extent{blocks * dims_.x, blocks * dims_.y, blocks * dims_.z};
     if (!texture_ || texture_->extent() != extent) {
@@ -227,8 +236,19 @@ const gl::Texture& SkipMap::texture(const gl::Functions& gl) {
         uploaded_ = 0;
     }
     if (uploaded_ != key_) {
-        texture_->upload(std::as_bytes(std::span(texels_)));
+        held_.reset();
+        if (curved_) {
+            texture_->upload(std::as_bytes(std::span(texels_)));
+        }
         uploaded_ = key_;
+    }
+    for (std::size_t way = 0; !curved_ && way < ways.size(); ++way) {
+        if (ways[way] && !held_[way]) {
+            const glm::ivec3 first = glm::ivec3(up_along(way)) * dims_;
+            texture_->upload_region({first.x, first.y, first.z}, {dims_.x, dims_.y, dims_.z},
+                                    std::as_bytes(cubes(way)));
+            held_[way] = true;
+        }
     }
     return *texture_;
 }

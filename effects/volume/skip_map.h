@@ -6,6 +6,7 @@
 #include "effects/volume/brick_distances.h"
 #include "effects/volume/bricks.h"
 #include "effects/volume/classification.h"
+#include "effects/volume/ray_frame.h"
 #include "effects/volume/source.h"
 #include "effects/volume/space.h"
 #include "engine/gl/texture.h"
@@ -66,10 +67,16 @@ class SkipMap {
     [[nodiscard]] const VoxelBox& occupied_box() const { return box_; }
     /// Whether there are bricks in which long slabs do.
     [[nodiscard]] bool any_smooth() const { return any_smooth_; }
-    /// A texture of unsigned bytes: 32 * kind (0 empty, 1 occupied, 1 + i: slabs of 4^i do) + how many bricks
-    /// are of that kind. Rays of Cartesian volumes are straight: sizes_ahead(). Those of curvilinear ones may
-    /// turn back: distance_to_others().
-    [[nodiscard]] const gl::Texture& texture(const gl::Functions& gl);
+    /// A texture of unsigned bytes: kind_step * kind (0 empty, 1 occupied, 1 + i: slabs of 4^i do) + how many
+    /// bricks are of that kind. Rays of Cartesian volumes are straight: CubesAhead, in a box of twice the
+    /// bricks along each axis, whose half along an axis is the lower one for rays that go down along it. Only
+    /// the blocks for `ways` are sure to hold anything: cubes that no ray asks for are not looked for. Rays
+    /// of curvilinear volumes may turn back: distance_to_others().
+    [[nodiscard]] const gl::Texture& texture(const gl::Functions& gl, const Ways& ways);
+    /// One of those blocks.
+    [[nodiscard]] std::span<const std::uint8_t> cubes(std::size_t way) {
+        return ahead_.texels(up_along(way));
+    }
 
   private:
     int find_smooth(const BrickGrid& bricks, const SmoothRule& rule, float overshoot);
@@ -88,9 +95,10 @@ class SkipMap {
     std::vector<std::uint8_t> texels_;
     bool curved_ = false;
     DistanceScratch scratch_;
-    AheadScratch ahead_;
+    CubesAhead ahead_;
     std::optional<gl::Texture> texture_;
     std::uint64_t uploaded_ = 0;
+    Ways held_;  ///< blocks of the texture that have been uploaded
 };
 
 }  // namespace viscera::volume

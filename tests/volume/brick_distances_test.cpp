@@ -122,22 +122,25 @@ int size_by_trial(const glm::ivec3& dims, const std::vector<std::uint8_t>& kinds
     return size;
 }
 
-TEST(SizesAhead, are_those_of_the_cubes_tried_one_by_one) {
+std::uint8_t texel_of(CubesAhead& cubes, const glm::ivec3& dims, const glm::ivec3& brick,
+                      const glm::ivec3& up) {
+    return cubes.texels(glm::bvec3(up))[voxel_index(brick, dims)];
+}
+
+TEST(CubesAhead, are_those_tried_one_by_one) {
     std::mt19937 random(5);
-    AheadScratch scratch;
-    std::vector<std::uint8_t> texels;
+    CubesAhead cubes;
     for (const glm::ivec3& dims : sizes) {
         for (const unsigned per_mille : shares) {
             const std::vector<std::uint8_t> kinds = random_kinds(dims, per_mille, 5, random);
-            sizes_ahead(dims, kinds, texels, scratch);
-            ASSERT_EQ(texels.size(), 8 * kinds.size());
+            cubes.take(dims, kinds);
             for (int trial = 0; trial < 60; ++trial) {
                 const glm::ivec3 up(random() % 2U, random() % 2U, random() % 2U);
                 const glm::ivec3 b(random() % static_cast<unsigned>(dims.x),
                                    random() % static_cast<unsigned>(dims.y),
                                    random() % static_cast<unsigned>(dims.z));
-                const glm::ivec3 t = b + up * dims;
-                const int texel = texels[voxel_index(t, 2 * dims)];
+                ASSERT_EQ(cubes.texels(glm::bvec3(up)).size(), kinds.size());
+                const int texel = texel_of(cubes, dims, b, up);
                 const int kind = kinds[voxel_index(b, dims)];
                 ASSERT_EQ(texel / kind_step, kind);
                 ASSERT_EQ(texel % kind_step, size_by_trial(dims, kinds, b, up))
@@ -148,41 +151,44 @@ TEST(SizesAhead, are_those_of_the_cubes_tried_one_by_one) {
     }
 }
 
-TEST(SizesAhead, take_no_notice_of_what_lies_behind) {
+TEST(CubesAhead, take_no_notice_of_what_lies_behind) {
     const glm::ivec3 dims(40, 1, 1);
     std::vector<std::uint8_t> kinds(40, 0);
     kinds[19] = 1;
-    AheadScratch scratch;
-    std::vector<std::uint8_t> texels;
-    sizes_ahead(dims, kinds, texels, scratch);
-    EXPECT_EQ(texels[20], 1);                    // down, towards the other one
-    EXPECT_EQ(texels[40 + 20], distance_reach);  // up, away from it
-    EXPECT_EQ(texels[18], distance_reach);
-    EXPECT_EQ(texels[40 + 18], 1);
-    EXPECT_EQ(texels[19], kind_step + 1);
+    CubesAhead cubes;
+    cubes.take(dims, kinds);
+    const auto size = [&](int x, int up) { return texel_of(cubes, dims, {x, 0, 0}, {up, 0, 0}); };
+    EXPECT_EQ(size(20, 0), 1);               // down, towards the other one
+    EXPECT_EQ(size(20, 1), distance_reach);  // up, away from it
+    EXPECT_EQ(size(18, 0), distance_reach);
+    EXPECT_EQ(size(18, 1), 1);
+    EXPECT_EQ(size(19, 0), kind_step + 1);
 }
 
-TEST(SizesAhead, allocate_nothing_the_second_time) {
+TEST(CubesAhead, forget_what_they_were_of_before) {
+    const glm::ivec3 dims(5, 1, 1);
+    CubesAhead cubes;
+    cubes.take(dims, std::vector<std::uint8_t>{0, 0, 0, 0, 1});
+    EXPECT_EQ(texel_of(cubes, dims, {0, 0, 0}, {1, 0, 0}), 4);
+    cubes.take(dims, std::vector<std::uint8_t>{0, 0, 1, 0, 0});
+    EXPECT_EQ(texel_of(cubes, dims, {0, 0, 0}, {1, 0, 0}), 2);
+}
+
+TEST(CubesAhead, allocate_nothing_the_second_time) {
     const glm::ivec3 dims(20, 10, 10);
     const std::vector<std::uint8_t> kinds(count_of(dims), 1);
-    AheadScratch scratch;
-    std::vector<std::uint8_t> texels;
-    sizes_ahead(dims, kinds, texels, scratch);
-    const auto held = [&] {
-        return std::array<const void*, 4>{scratch.kinds.data(), scratch.along.data(), scratch.sizes.data(),
-                                          texels.data()};
-    };
-    const auto before = held();
-    sizes_ahead(dims, kinds, texels, scratch);
-    EXPECT_EQ(held(), before);
+    CubesAhead cubes;
+    cubes.take(dims, kinds);
+    const auto* const before = cubes.texels({true, false, true}).data();
+    cubes.take(dims, kinds);
+    EXPECT_EQ(cubes.texels({false, false, true}).data(), before);
 }
 
-TEST(SizesAhead, refuse_another_size) {
-    AheadScratch scratch;
-    std::vector<std::uint8_t> texels;
-    EXPECT_THROW(sizes_ahead({2, 2, 2}, std::vector<std::uint8_t>(7), texels, scratch), Error);
-    EXPECT_NO_THROW(sizes_ahead({0, 2, 2}, {}, texels, scratch));
-    EXPECT_TRUE(texels.empty());
+TEST(CubesAhead, refuse_another_size) {
+    CubesAhead cubes;
+    EXPECT_THROW(cubes.take({2, 2, 2}, std::vector<std::uint8_t>(7)), Error);
+    EXPECT_NO_THROW(cubes.take({0, 2, 2}, {}));
+    EXPECT_TRUE(cubes.texels({true, true, true}).empty());
 }
 
 }  // namespace

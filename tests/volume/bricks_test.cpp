@@ -287,5 +287,15 @@ TEST(Occupancy, is_the_share_of_occupied_bricks) {
     EXPECT_EQ(occupancy({}), 0.0);
 }
 
+TEST(BrickSize, grows_where_there_would_be_too_many) {
+    EXPECT_EQ(brick_size_for(glm::ivec3(1)), 3);
+    EXPECT_EQ(brick_size_for(glm::ivec3(256)), 3);
+    EXPECT_EQ(brick_size_for(glm::ivec3(512)), 4);
+    EXPECT_EQ(brick_size_for(glm::ivec3(1024)), 8);
+    EXPECT_EQ(brick_size_for({3072, 1, 1}), 3);
+    EXPECT_EQ(brick_size_for({1, 1, 3073}), 4);
+    EXPECT_EQ(brick_size_for({2, 100000, 2}), 98);
+}
+
 }  // namespace
 }  // namespace viscera::volume

@@ -2,6 +2,7 @@
 // and it is never stale.
 
 #include <cmath>
+#include <fstream>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -202,24 +203,31 @@ Count count_slabs(const nlohmann::json& points, bool skip) {
     return count;
 }
 
-/// Prints what is taken beside what an oracle needs: a brick is taken whole where a voxel of it or beside it
-/// is seen.
-void expect_fewer(const char* what, const nlohmann::json& points) {
+/// Prints what is taken beside what an oracle needs, and expects it to be at most `most` times as much: a
+/// brick is taken whole where a voxel of it or beside it is seen.
+void expect_fewer(const char* what, double most, const nlohmann::json& points) {
     const Count with = count_slabs(points, true);
     const Count without = count_slabs(points, false);
     std::printf("  %s: %.3f slabs taken for each that is needed, %.3f without skipping\n", what,
                 with.taken / with.needed, without.taken / without.needed);
     EXPECT_EQ(with.needed, without.needed);
-    // At least three of four slabs that an oracle leaves out are left out.
-    EXPECT_LE(with.taken - with.needed, 0.25 * (without.taken - without.needed));
+    EXPECT_LE(with.taken, most * with.needed);
 }
 
 TEST(SkippingOracle, LeavesOutWhatIsNoBone) {
-    expect_fewer("bone", {{{"value", 200}, {"opacity", 0.0}}, {{"value", 900}, {"opacity", 0.3}}});
+    // Of a shell this thin bricks of a single voxel would still take 1.39 times as much.
+    expect_fewer("bone", 1.9, {{{"value", 200}, {"opacity", 0.0}}, {{"value", 900}, {"opacity", 0.3}}});
 }
 
 TEST(SkippingOracle, LeavesOutTheAir) {
-    expect_fewer("soft tissue", {{{"value", -400}, {"opacity", 0.0}}, {{"value", 0}, {"opacity", 0.004}}});
+    expect_fewer("soft tissue", 1.15,
+                 {{{"value", -400}, {"opacity", 0.0}}, {{"value", 0}, {"opacity", 0.004}}});
+}
+
+TEST(SkippingOracle, LeavesOutWhatSurroundsTheHeadOfTheScene) {
+    std::ifstream stream(std::filesystem::path(VISCERA_SOURCE_DIR) / "assets/scenes/head.json");
+    const nlohmann::json scene = nlohmann::json::parse(stream);
+    expect_fewer("skin over bone", 1.15, scene["passes"][0]["parameters"]["transfer_function"]["points"]);
 }
 
 /// What a renderer shows after changes, one after another, is what a fresh one shows.
@@ -281,6 +289,33 @@ TEST_F(NeverStale, Composite) {
     expect_fresh("no crop");
     volume_.replace(vessel_volume(32, 2.5, 5));
     expect_fresh("another volume");
+}
+
+TEST_F(NeverStale, WhereverTheRaysTurn) {
+    // What lies ahead of rays is found for those ways that they go, when they go there.
+    start({{"transfer_function", vessels_shown()}});
+    nlohmann::json points = vessels_shown()["points"];
+    const auto from = [&](const glm::dvec3& eye_mm) {
+        look_.eye_mm = eye_mm;
+        VolumeStage fresh;
+        const Shot wanted = fresh.cast(LiveVolume(volume_.volume()), parameters_, look_, size_);
+        const Shot shown = stage_.cast_again(volume_, wanted.view, size_);
+        EXPECT_TRUE(same_bits(shown, wanted)) << eye_mm.x << ' ' << eye_mm.y << ' ' << eye_mm.z << ": "
+                                              << difference(shown.image, wanted.image).max;
+    };
+    for (int way = 0; way < 8; ++way) {
+        if (way == 4) {
+            points[0]["value"] = 110;
+            set("/transfer_function/points", points);
+        }
+        from({way % 2 != 0 ? 130 : -130, way / 2 % 2 != 0 ? 160 : -160, way / 4 != 0 ? 120 : -120});
+    }
+    from({2, -200, -1});
+    from({10, -5, 3});  // inside, every way
+    points[0]["value"] = 5;
+    set("/transfer_function/points", points);
+    from({12, -5, 3});
+    from({-240, 0, 0});
 }
 
 TEST_F(NeverStale, Isosurface) {
