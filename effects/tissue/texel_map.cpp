@@ -19,7 +19,7 @@ namespace {
 constexpr std::uint32_t none = MeshAdjacency::none;
 
 /// Named in the disk cache; another number when maps are made in another way.
-constexpr std::string_view cached_kind = "texel-map-1";
+constexpr std::string_view cached_kind = "texel-map-2";
 
 bool read_map(const io::DiskCache& cache, std::uint64_t key, int size, TexelMap& map) {
     const auto bytes = cache.load(cached_kind, key);

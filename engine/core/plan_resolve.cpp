@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <set>
+#include <span>
+#include <vector>
 
 #include "engine/core/plan_shapes.h"
 
@@ -16,6 +18,7 @@ class Resolver {
   private:
     void bind_pass(std::size_t pass);
     void check_sizes();
+    void check_sizes(std::span<const char> wanted);
     void check_ports();
     void check_pair(const GraphPort& first, const GraphPort& second);
     std::optional<std::size_t> bind_read(const GraphPort& port);
@@ -71,6 +74,7 @@ CompileResult Resolver::run() {
         }
     }
     bind_outputs();
+    check_sizes();
     return std::move(result_);
 }
 
@@ -103,15 +107,43 @@ void Resolver::bind_pass(std::size_t index) {
             planned.bindings[i].content = make_content(port);
         }
     }
-    check_sizes();
 }
 
-/// What a pass draws into at once is one framebuffer.
+/// What a pass draws into at once is one framebuffer. Optional writes that nobody wants are not drawn.
 void Resolver::check_sizes() {
+    std::vector<char> wanted(plan_.contents.size(), 0);
+    for (const PlanPass& pass : plan_.passes) {
+        for (const PlanBinding& binding : pass.bindings) {
+            if (binding.content && !makes_content(binding.access)) {
+                wanted[*binding.content] = 1;
+            }
+        }
+    }
+    for (const PlanContent& content : plan_.contents) {
+        if (content.modifies) {
+            wanted[*content.modifies] = 1;
+        }
+    }
+    for (const PlanOutput& output : plan_.outputs) {
+        wanted[output.content] = 1;
+    }
+    for (const PlanHistory& history : plan_.history) {
+        if (history.current) {
+            wanted[*history.current] = 1;
+        }
+    }
+    for (pass_ = 0; pass_ < graph_.passes.size(); ++pass_) {
+        check_sizes(wanted);
+    }
+}
+
+void Resolver::check_sizes(std::span<const char> wanted) {
     const auto& bindings = plan_.passes[pass_].bindings;
     const PlanContent* first = nullptr;
     for (std::size_t i = 0; i < bindings.size(); ++i) {
-        if (!bindings[i].content || !makes_content(bindings[i].access)) {
+        const bool drawn = bindings[i].content && makes_content(bindings[i].access) &&
+                           (!graph_.passes[pass_].ports[i].optional || wanted[*bindings[i].content] != 0);
+        if (!drawn) {
             continue;
         }
         const PlanContent& content = plan_.contents[*bindings[i].content];

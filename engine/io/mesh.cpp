@@ -119,7 +119,24 @@ std::vector<glm::vec3> vertex_normals(const MeshData& mesh) {
     return normals;
 }
 
+namespace {
+
+/// A number whose last place is that of the largest coordinate: what is added to it and taken away again is
+/// rounded to that.
+float rounder(std::span<const glm::vec3> positions) {
+    float largest = 0.0F;
+    for (const glm::vec3& p : positions) {
+        const float here = std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+        largest = std::isfinite(here) ? std::max(largest, here) : largest;
+    }
+    const float number = 1.5F * std::exp2(std::ceil(std::log2(largest)));
+    return std::isfinite(number) ? number : 0.0F;
+}
+
+}  // namespace
+
 std::vector<std::uint32_t> first_at_same_place(std::span<const glm::vec3> positions) {
+    const float large = rounder(positions);
     using Key = std::array<std::uint32_t, 3>;
     struct Hash {
         std::size_t operator()(const Key& key) const {
@@ -137,7 +154,7 @@ std::vector<std::uint32_t> first_at_same_place(std::span<const glm::vec3> positi
     for (std::size_t v = 0; v < positions.size(); ++v) {
         Key key{};
         for (int c = 0; c < 3; ++c) {
-            const float value = positions[v][c];
+            const float value = (positions[v][c] + large) - large;
             key[static_cast<std::size_t>(c)] = std::bit_cast<std::uint32_t>(value == 0.0F ? 0.0F : value);
         }
         result[v] = first.try_emplace(key, static_cast<std::uint32_t>(v)).first->second;

@@ -37,7 +37,8 @@ struct MeshOptions {
 /// Unit vertex normals, the mean of the triangles' weighted by their angle at the vertex.
 [[nodiscard]] std::vector<glm::vec3> vertex_normals(const MeshData& mesh);
 
-/// For each vertex the first vertex at exactly the same place: seams of texture or normals closed.
+/// For each vertex the first vertex at the same place: seams of texture or normals closed. Coordinates are
+/// compared in steps of the largest one's last place, since what is 0 often comes as 1e-15.
 [[nodiscard]] std::vector<std::uint32_t> first_at_same_place(std::span<const glm::vec3> positions);
 
 /// Reads a centreline: the lines of a .vtp with point data `MaximumInscribedSphereRadius` or `radius`, or

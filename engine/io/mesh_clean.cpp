@@ -3,6 +3,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <string>
 #include <unordered_map>
 
@@ -71,7 +72,12 @@ void weld(MeshData& mesh) {
     }
 }
 
-bool degenerate(const MeshData& mesh, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+/// Without area, also where rounding has left some: with two corners at one place.
+bool degenerate(const MeshData& mesh, std::span<const std::uint32_t> place, std::uint32_t a, std::uint32_t b,
+                std::uint32_t c) {
+    if (place[a] == place[b] || place[b] == place[c] || place[c] == place[a]) {
+        return true;
+    }
     const glm::dvec3 p(mesh.positions[a]);
     const glm::dvec3 normal =
         glm::cross(glm::dvec3(mesh.positions[b]) - p, glm::dvec3(mesh.positions[c]) - p);
@@ -82,6 +88,7 @@ void drop_triangles(MeshData& mesh, std::string_view where, Log& log) {
     std::size_t out_of_range = 0;
     std::size_t not_finite = 0;
     std::size_t without_area = 0;
+    const std::vector<std::uint32_t> place = first_at_same_place(mesh.positions);
     std::vector<std::uint32_t> kept;
     kept.reserve(mesh.indices.size());
     for (std::size_t t = 0; t + 2 < mesh.indices.size(); t += 3) {
@@ -92,7 +99,7 @@ void drop_triangles(MeshData& mesh, std::string_view where, Log& log) {
             ++out_of_range;
         } else if (!finite(mesh.positions[a]) || !finite(mesh.positions[b]) || !finite(mesh.positions[c])) {
             ++not_finite;
-        } else if (degenerate(mesh, a, b, c)) {
+        } else if (degenerate(mesh, place, a, b, c)) {
             ++without_area;
         } else {
             kept.insert(kept.end(), {a, b, c});

@@ -98,7 +98,7 @@ void use_atlas(TextureSpace& space, const MeshAtlas& atlas) {
 }
 
 /// Named in the disk cache; another number when atlases are made in another way.
-constexpr std::string_view cached_kind = "mesh-atlas-1";
+constexpr std::string_view cached_kind = "mesh-atlas-2";
 
 std::optional<MeshAtlas> kept_atlas(const io::DiskCache& cache, std::uint64_t key, const MeshData& mesh) {
     const auto bytes = cache.load(cached_kind, key);

@@ -202,6 +202,18 @@ struct Broken {
 
 class CompileFaults : public testing::TestWithParam<Broken> {};
 
+TEST(Compile, OptionalWritesThatNobodyWantsMayHaveAnySize) {
+    Graph graph = chain();
+    graph.targets.push_back({.name = "rest", .size = {.scale = 0.5}});
+    graph.passes[1].ports.push_back(
+        {.port = "blur.rest", .target = "rest", .access = Access::write, .optional = true});
+    EXPECT_THAT(fault_texts(graph), testing::IsEmpty());
+    graph.outputs.emplace_back("rest");
+    expect_only_fault(graph,
+                      "pass 'blur', port 'blur.rest', target 'rest': differs in size from 'blur', which the "
+                      "pass draws into as well");
+}
+
 TEST_P(CompileFaults, AreNamedAndAlone) {
     Graph graph = chain();
     ASSERT_TRUE(fault_texts(graph).empty());

@@ -5,10 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <numbers>
+#include <sstream>
 
 #include "engine/core/error.h"
+#include "engine/core/mesh_adjacency.h"
 #include "engine/io/file_info.h"
 #include "tests/io/sample_files.h"
 #include "tests/io/temp_folder.h"
@@ -103,6 +107,45 @@ TEST_F(Meshes, ADroppedTriangleTakesNoCoordinatesAlong) {
     const MeshData mesh = load("a.obj", lists + "f 1/1 2/2 3/3\nf 1/1 2/2 9/9\n").at(0);
     EXPECT_EQ(mesh.triangle_count(), 1U);
     EXPECT_EQ(mesh.uvs.size(), 3U);
+}
+
+/// A sphere as programs write it, whose lower pole is a ring of points at sin(pi) = 1.2e-16: closed all the
+/// same.
+TEST_F(Meshes, PlacesThatDifferByRoundingAreOne) {
+    constexpr int columns = 12;
+    constexpr int rows = 6;
+    std::string text;
+    for (int row = 0; row <= rows; ++row) {
+        for (int column = 0; column < columns; ++column) {
+            const double theta = std::numbers::pi * row / rows;
+            const double phi = 2.0 * std::numbers::pi * column / columns;
+            std::ostringstream line;
+            line << std::setprecision(17) << "v " << 25.0 * std::sin(theta) * std::cos(phi) << ' '
+                 << 25.0 * std::cos(theta) << ' ' << 25.0 * std::sin(theta) * std::sin(phi) << '\n';
+            text += line.str();
+        }
+    }
+    for (int row = 0; row < rows; ++row) {
+        for (int column = 0; column < columns; ++column) {
+            const int a = row * columns + column + 1;
+            const int b = row * columns + (column + 1) % columns + 1;
+            for (const auto& [p, q, r] :
+                 {std::array{a, b, b + columns}, std::array{a, b + columns, a + columns}}) {
+                text += "f " + std::to_string(p) + ' ' + std::to_string(q) + ' ' + std::to_string(r) + '\n';
+            }
+        }
+    }
+    const MeshData sphere = load("sphere.obj", text).at(0);
+    const MeshAdjacency adjacency = find_adjacency(sphere.indices, first_at_same_place(sphere.positions));
+    EXPECT_EQ(sphere.triangle_count(), 2U * columns * (rows - 1)) << "without those at the poles";
+    EXPECT_EQ(adjacency.open_edges, 0U);
+    EXPECT_EQ(adjacency.non_manifold_edges, 0U);
+    // Neighbours of floats at the mesh's own size stay apart.
+    const std::vector<glm::vec3> apart{
+        {25.0F, 0.0F, 0.0F}, {25.0F + 0x1p-17F, 0.0F, 0.0F}, {25.0F, 1e-20F, 0.0F}};
+    EXPECT_EQ(first_at_same_place(apart), (std::vector<std::uint32_t>{0, 1, 0}));
+    EXPECT_EQ(first_at_same_place(std::vector<glm::vec3>{{3e38F, 0.0F, 0.0F}, {2e38F, 0.0F, 0.0F}}),
+              (std::vector<std::uint32_t>{0, 1}));
 }
 
 TEST_F(Meshes, NothingLeftIsSaidAndReturned) {

@@ -96,7 +96,7 @@ TEST_P(RealOrgan, BleedsAndIsCoagulated) {
     stage.renderer().keep({"organ.color", "tissue.energy"});
     (void)stage.render(0.0);
     const Image before = stage.renderer().read("organ.color");
-    for (int i = 1; i <= 8; ++i) {
+    for (int i = 1; i <= 12; ++i) {
         (void)stage.render(i / 8.0);
     }
     const Image after = stage.renderer().read("organ.color");
