@@ -125,8 +125,10 @@ void add_bench(CLI::App& app, int& exit_code) {
         ->add_option("--pixels", arguments->pixels,
                      "writes the first output of --scene as float32, top row first")
         ->needs(scene);
-    command->add_option("--glsl", arguments->glsl,
-                        "reads shaders from this folder in place of those in the binary");
+    command
+        ->add_option("--glsl", arguments->glsl,
+                     "shaders in this folder come before those of the same names in the binary")
+        ->check(CLI::ExistingDirectory);
     command->add_flag("--list", arguments->list, "names the cases and stops");
     command->callback([arguments, &exit_code] { exit_code = bench(*arguments); });
 }
