@@ -85,18 +85,15 @@ bool take_slab(inout State state, Slab slab) {
     state.transmittance = transmittance;
 #else
     // Two Gauss points, fourth order (spec: accuracy F15). Their weights are scaled so that they add up to the slab's
-    // opacity, which they do only for thin slabs: otherwise an opaque surface would come out dark.
+    // opacity, which they do only for thin slabs: otherwise an opaque surface would come out dark. So only their ratio counts,
+    // and between them lies the optical depth of so much of the slab, however extinction rises.
     vec4 a = material(slab.centre - gauss_point * slab.extent);
     vec4 b = material(slab.centre + gauss_point * slab.extent);
-    float mean = 0.5 * (a.a + b.a);
-    float slope = 0.8660254037844386 * (b.a - a.a);
-    // Optical depth from the slab's start to each point: h (mean (u + 1/2) + slope (u^2 - 1/4)), u = -+gauss_point.
-    const float bend = gauss_point * gauss_point - 0.25;
-    float weight_a = a.a * exp(-slab.length_mm * (mean * (0.5 - gauss_point) + slope * bend));
-    float weight_b = b.a * exp(-slab.length_mm * (mean * (0.5 + gauss_point) + slope * bend));
-    state.depth += slab.length_mm * mean;
+    float depth = slab.length_mm * 0.5 * (a.a + b.a);
+    float behind = b.a * exp(-2.0 * gauss_point * depth);
+    state.depth += depth;
     float transmittance = exp(-state.depth);
-    float share = weight_b / max(weight_a + weight_b, 1e-30);
+    float share = behind / max(a.a + behind, 1e-30);
     state.colour += (state.transmittance - transmittance) * mix(a.rgb, b.rgb, share);
     state.transmittance = transmittance;
 #endif
