@@ -90,6 +90,9 @@ void LabelParams::validate() const {
     if (!file.empty() && !host.empty()) {
         throw Error(ErrorCode::scene, "/labels", "has either a file or a host's volume");
     }
+    if (!used() && !segments.empty()) {
+        throw Error(ErrorCode::scene, "/labels", "has segments, but neither a file nor a host's volume");
+    }
     if (segments.size() > most_segments) {
         throw Error(ErrorCode::scene, "/labels/segments",
                     "at most " + std::to_string(most_segments) + " segments");
