@@ -165,6 +165,9 @@ Volume read_payload(const VolumeHead& head, const MetaHeader& header, const Read
     const std::string_view header_size = header.get({"HeaderSize"});
     const bool plain = !header.fields.contains("BinaryData") || header.is_true({"BinaryData"});
     if (!plain || name.starts_with("LIST") || name.find('%') != std::string::npos) {
+        if (name.find('%') != std::string::npos) {
+            expect_numbered_files(name, "ElementDataFile", reading);
+        }
         require_plausible(head, reading);
         const std::vector<std::byte> voxels = read_itk_voxels(ItkFormat::meta, head, reading);
         VolumeHead native = head;

@@ -48,6 +48,12 @@ NrrdHeader scan(const Reading& reading) {
         if (line.starts_with('#')) {
             continue;
         }
+        // ITK puts what it does not understand into messages of a fixed size.
+        constexpr std::size_t most_field = 800;
+        if (line.size() > most_field && line.find(":=") == std::string_view::npos) {
+            reading.fail("its header has a line of " + std::to_string(line.size()) + " bytes: '" +
+                         printable(line) + "'");
+        }
         const std::size_t colon = line.find(':');
         if (colon == std::string_view::npos) {
             continue;
@@ -247,6 +253,9 @@ Volume read_nrrd(const Reading& reading) {
     static_cast<void>(size_of(reading.file, reading));
     const NrrdHeader header = scan(reading);
     const std::vector<double> sizes = checked_sizes(header, reading);
+    if (const std::string_view names = header.get("datafile"); names.find('%') != std::string_view::npos) {
+        expect_numbered_files(names, "data file", reading);
+    }
     VolumeHead head;
     head.type = type_of(header.get("type"), reading);
     head.big_endian = lower(header.get("endian")) == "big";

@@ -26,6 +26,10 @@ namespace viscera::io {
 [[nodiscard]] glm::ivec3 dims_of(std::span<const double> sizes, std::string_view field,
                                  const Reading& reading);
 
+/// Names of slices as a pattern, which libraries hand to printf and count by: `text` must be a name with one
+/// %d, perhaps of a width, and the first number, the last and the step, the first alone, or none.
+void expect_numbered_files(std::string_view text, std::string_view field, const Reading& reading);
+
 /// Throws Error(file) when not even the whole folder of the file could hold the voxels packed, and
 /// Error(limit) when memory cannot: for voxels that a library reads from places of its own.
 void require_plausible(const VolumeHead& head, const Reading& reading);

@@ -231,6 +231,35 @@ TEST(VolumeLies, AreToldByFileAndField) {
     }
 }
 
+/// What ITK's readers do not survive: patterns for printf, steps of 0, and lines longer than its messages.
+TEST(VolumeLies, NamesOfSlicesAndLongLinesAreReadBeforeALibraryDoes) {
+    const test::TempFolder folder;
+    const std::string half = test::bytes_of(test::ramp<std::int16_t>(12));
+    static_cast<void>(folder.write("s0.raw", half));
+    static_cast<void>(folder.write("s1.raw", half));
+    const auto meta = [](const std::string& names) {
+        const std::string whole = test::mha("MET_SHORT", "");
+        return whole.substr(0, whole.find("ElementDataFile")) + "ElementDataFile = " + names + "\n";
+    };
+    const auto numbered = [](const std::string& names) {
+        return test::nrrd("short", "raw", "", "left-posterior-superior", "data file: " + names + "\n");
+    };
+    Log log;
+    EXPECT_EQ(load_volume(folder.write("a.mhd", meta("s%d.raw 0 1 1")), {}, log).stored({3, 2, 1}), 11.0);
+    EXPECT_EQ(load_volume(folder.write("a.nhdr", numbered("s%01d.raw 0 1 1")), {}, log).stored({3, 2, 1}),
+              11.0);
+    for (const char* names : {"s%d.raw 0 1", "s%d.raw 0 1 0", "s%d.raw 0 1 -1", "s%d.raw 1 0 1",
+                              "s%s.raw 0 1 1", "s%d%n.raw 0 1 1", "s%999999d.raw 0 1 1", "s%", "s%d.raw"}) {
+        for (const auto& [name, bytes] :
+             {std::pair("b.mhd", meta(names)), std::pair("b.nhdr", numbered(names))}) {
+            EXPECT_THROW(static_cast<void>(load_volume(folder.write(name, bytes), {}, log)), Error) << names;
+        }
+    }
+    const std::string lines = test::nrrd("short", "raw", half + half, "left-posterior-superior",
+                                         "key " + std::string(5000, 'x') + "\n");
+    EXPECT_THROW(static_cast<void>(load_volume(folder.write("long.nrrd", lines), {}, log)), Error);
+}
+
 TEST(VolumeDamageOfSlices, DamagedAndUnlikePicturesAreNamed) {
     for (const char* name : {"b.png", "b.tif", "b.jpg"}) {
         const test::TempFolder folder;
