@@ -167,6 +167,12 @@ Volume read_payload(const VolumeHead& head, const MetaHeader& header, const Read
     if (!plain || name.starts_with("LIST") || name.find('%') != std::string::npos) {
         if (name.find('%') != std::string::npos) {
             expect_numbered_files(name, "ElementDataFile", reading);
+            const std::string_view pattern = std::string_view(name).substr(0, name.find_first_of(" \t"));
+            const std::vector<double> n =
+                numbers_of(std::string_view(name).substr(pattern.size()), "ElementDataFile", reading);
+            if (std::floor((n[1] - n[0]) / n[2]) + 1.0 != head.volume.grid.dims.z) {
+                reading.fail("ElementDataFile: is not one file for each slice");
+            }
         }
         require_plausible(head, reading);
         const std::vector<std::byte> voxels = read_itk_voxels(ItkFormat::meta, head, reading);

@@ -58,13 +58,11 @@ void expect_numbered_files(std::string_view text, std::string_view field, const 
     const bool one = percent != std::string_view::npos && kind != std::string_view::npos &&
                      kind < percent + 5 && pattern[kind] == 'd' &&
                      pattern.find('%', kind) == std::string_view::npos;
-    const std::vector<double> numbers =
-        one && !trim(rest).empty() ? numbers_of(rest, field, reading) : std::vector<double>{};
+    const std::vector<double> numbers = one ? numbers_of(rest, field, reading) : std::vector<double>{};
     constexpr double most = 1e6;
     const bool whole =
         std::ranges::all_of(numbers, [](double n) { return n == std::floor(n) && n >= 0.0 && n <= most; });
-    const bool counts =
-        numbers.size() <= 1 || (numbers.size() == 3 && numbers[0] <= numbers[1] && numbers[2] >= 1.0);
+    const bool counts = numbers.size() == 3 && numbers[0] <= numbers[1] && numbers[2] >= 1.0;
     if (!one || !whole || !counts) {
         reading.fail(std::string(field) + ": '" + printable(text) +
                      "' is no name with one %d and the numbers of the first file, the last and the step");

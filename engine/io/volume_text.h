@@ -27,7 +27,7 @@ namespace viscera::io {
                                  const Reading& reading);
 
 /// Names of slices as a pattern, which libraries hand to printf and count by: `text` must be a name with one
-/// %d, perhaps of a width, and the first number, the last and the step, the first alone, or none.
+/// %d, perhaps of a width, and the first number, the last and the step.
 void expect_numbered_files(std::string_view text, std::string_view field, const Reading& reading);
 
 /// Throws Error(file) when not even the whole folder of the file could hold the voxels packed, and
