@@ -160,6 +160,53 @@ void take_orientation(VolumeHead& head, const ItkHeader& itk, const Reading& rea
     head.volume.grid.dims = dims;
 }
 
+/// Files of a numbered series or a list, one for each slice.
+std::vector<std::string> slice_names(std::string_view name, const MetaHeader& header, const VolumeHead& head,
+                                     const Reading& reading) {
+    const auto slices = static_cast<std::size_t>(head.volume.grid.dims.z);
+    std::vector<std::string> names;
+    if (name.starts_with("LIST")) {
+        constexpr std::size_t most_text = std::size_t{1} << 22U;
+        const std::string bytes = first_bytes(reading.file, most_text);
+        std::string_view rest =
+            std::string_view(bytes).substr(std::min<std::size_t>(header.end, bytes.size()));
+        while (!rest.empty() && names.size() < slices) {
+            names.emplace_back(trim(take_line(rest)));
+        }
+    } else if (const std::size_t percent = name.find('%'); percent != std::string_view::npos) {
+        const std::string_view pattern = name.substr(0, name.find_first_of(" \t"));
+        const std::size_t kind = pattern.find('d', percent);
+        const std::string_view width = pattern.substr(percent + 1, kind - percent - 1);
+        const std::vector<double> n = numbers_of(name.substr(pattern.size()), "ElementDataFile", reading);
+        for (double number = n[0]; number <= n[1] && names.size() <= slices; number += n[2]) {
+            std::string digits = std::to_string(static_cast<int>(number));
+            const std::size_t wide =
+                width.empty() ? 0 : static_cast<std::size_t>(std::stoi(std::string(width)));
+            digits.insert(0, wide > digits.size() ? wide - digits.size() : 0,
+                          width.starts_with('0') ? '0' : ' ');
+            names.push_back(std::string(pattern.substr(0, percent)) + digits +
+                            std::string(pattern.substr(kind + 1)));
+        }
+    } else {
+        return names;
+    }
+    if (names.size() != slices) {
+        reading.fail("ElementDataFile: is not one file for each slice");
+    }
+    return names;
+}
+
+/// ITK leaves a slice dark whose file is missing.
+void expect_slices(const std::vector<std::string>& names, const Reading& reading) {
+    for (const std::string& name : names) {
+        const std::filesystem::path file = reading.file.parent_path() / name;
+        std::error_code ignored;
+        if (!std::filesystem::is_regular_file(file, ignored)) {
+            reading.fail("its voxels are to be in '" + file.string() + "', which is not a file");
+        }
+    }
+}
+
 Volume read_payload(const VolumeHead& head, const MetaHeader& header, const Reading& reading) {
     const std::string name(header.get({"ElementDataFile"}));
     const std::string_view header_size = header.get({"HeaderSize"});
@@ -167,13 +214,8 @@ Volume read_payload(const VolumeHead& head, const MetaHeader& header, const Read
     if (!plain || name.starts_with("LIST") || name.find('%') != std::string::npos) {
         if (name.find('%') != std::string::npos) {
             expect_numbered_files(name, "ElementDataFile", reading);
-            const std::string_view pattern = std::string_view(name).substr(0, name.find_first_of(" \t"));
-            const std::vector<double> n =
-                numbers_of(std::string_view(name).substr(pattern.size()), "ElementDataFile", reading);
-            if (std::floor((n[1] - n[0]) / n[2]) + 1.0 != head.volume.grid.dims.z) {
-                reading.fail("ElementDataFile: is not one file for each slice");
-            }
         }
+        expect_slices(slice_names(name, header, head, reading), reading);
         require_plausible(head, reading);
         const std::vector<std::byte> voxels = read_itk_voxels(ItkFormat::meta, head, reading);
         VolumeHead native = head;

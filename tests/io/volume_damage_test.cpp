@@ -255,6 +255,12 @@ TEST(VolumeLies, NamesOfSlicesAndLongLinesAreReadBeforeALibraryDoes) {
             EXPECT_THROW(static_cast<void>(load_volume(folder.write(name, bytes), {}, log)), Error) << names;
         }
     }
+    EXPECT_EQ(load_volume(folder.write("c.mhd", meta("LIST\ns0.raw\ns1.raw")), {}, log).stored({3, 2, 1}),
+              11.0);
+    for (const char* names : {"LIST\ns0.raw\ns7.raw", "LIST\ns0.raw", "s%d.raw 1 2 1", "s%d.raw 0 0 1"}) {
+        EXPECT_THROW(static_cast<void>(load_volume(folder.write("b.mhd", meta(names)), {}, log)), Error)
+            << names;
+    }
     const std::string lines = test::nrrd("short", "raw", half + half, "left-posterior-superior",
                                          "key " + std::string(5000, 'x') + "\n");
     EXPECT_THROW(static_cast<void>(load_volume(folder.write("long.nrrd", lines), {}, log)), Error);
