@@ -5,8 +5,7 @@
 namespace viscera::volume {
 
 std::vector<VoxelBox> DerivedSource::changes(const Source& voxels, bool& everything) const {
-    everything = true;
-    return version_ == 0 ? std::vector<VoxelBox>{} : voxels.changes_since(version_, everything);
+    return voxels.changes_since(version_, everything);
 }
 
 void DerivedSource::replace(Volume volume) {

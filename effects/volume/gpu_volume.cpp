@@ -266,10 +266,7 @@ void GpuVolume::update(const Source& source) {
     }
     const Volume& volume = source.volume();
     bool everything = true;
-    std::vector<VoxelBox> boxes;
-    if (version_ != 0) {
-        boxes = source.changes_since(version_, everything);
-    }
+    std::vector<VoxelBox> boxes = source.changes_since(version_, everything);
     if (everything) {
         if (dims_ != volume.grid.dims || type_ != volume.type) {
             texture_ = make_texture(texture_.gl(), volume);

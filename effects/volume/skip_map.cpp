@@ -74,10 +74,7 @@ std::shared_ptr<Bricks> load_bricks(Assets& assets, const Source& source, int ch
         return bricks;
     }
     bool everything = true;
-    std::vector<VoxelBox> changed;
-    if (bricks->version != 0) {
-        changed = source.changes_since(bricks->version, everything);
-    }
+    const std::vector<VoxelBox> changed = source.changes_since(bricks->version, everything);
     if (everything) {
         const Progress progress =
             assets.progress("summarising " + std::filesystem::path(volume.source).filename().string());

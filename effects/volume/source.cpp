@@ -56,12 +56,7 @@ std::shared_ptr<const Source> live_source(Assets& assets, const LiveVolume& live
     if (source->statistics.min != least && source->statistics.non_finite > 0) {
         source->filler_version = live.version();
     }
-    if (const std::size_t count = source->statistics.non_finite; count > 0) {
-        assets.log().fault("volume.non_finite",
-                           volume.source + ": " + std::to_string(count) +
-                               " voxels are NaN, infinite or beyond 1e36; they stay empty",
-                           count);
-    }
+    report_no_numbers(volume, source->statistics.non_finite, assets.log());
     source->live = &live;
     source->key = key;
     source->statistics_version = live.version();
@@ -81,7 +76,7 @@ double Source::filler() const {
 
 std::vector<VoxelBox> Source::changes_since(std::uint64_t version, bool& everything) const {
     everything = true;
-    if (live == nullptr || version < filler_version) {
+    if (live == nullptr || version == 0 || version < filler_version) {
         return {};
     }
     return live->changes_since(version, everything);

@@ -44,8 +44,8 @@ struct Source {
     [[nodiscard]] std::uint64_t state_key() const;
     /// The stored number that stands for voxels that are no numbers: the least value's.
     [[nodiscard]] double filler() const;
-    /// Boxes of a host's volume that have changed since it had another version. `everything`: all may have,
-    /// also because what fills voxels that are no numbers is another value.
+    /// Boxes of a host's volume that have changed since it had another version (0: none yet). `everything`:
+    /// all may have, also because what fills voxels that are no numbers is another value.
     [[nodiscard]] std::vector<VoxelBox> changes_since(std::uint64_t version, bool& everything) const;
 };
 

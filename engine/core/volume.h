@@ -16,6 +16,8 @@
 
 namespace viscera {
 
+class Log;
+
 /// How a voxel lies in memory; little-endian.
 enum class ScalarType { u8, i8, u16, i16, f32 };
 [[nodiscard]] std::string_view to_string(ScalarType type);
@@ -92,6 +94,9 @@ template <class T>
     constexpr T greatest = static_cast<T>(1e36);
     return stored >= -greatest && stored <= greatest;
 }
+
+/// Says how many voxels are no numbers, as the fault "volume.non_finite"; nothing where all are.
+void report_no_numbers(const Volume& volume, std::uint64_t count, Log& log);
 
 /// What a volume's values are, rescaled; voxels that are no numbers are counted and left out.
 struct VolumeStatistics {

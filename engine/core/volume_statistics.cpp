@@ -3,6 +3,7 @@
 #include <limits>
 #include <tuple>
 
+#include "engine/core/log.h"
 #include "engine/core/volume.h"
 
 namespace viscera {
@@ -101,6 +102,15 @@ VolumeStatistics of_floats(const Volume& volume, int channel, int bins) {
 }
 
 }  // namespace
+
+void report_no_numbers(const Volume& volume, std::uint64_t count, Log& log) {
+    if (count > 0) {
+        log.fault("volume.non_finite",
+                  volume.source + ": " + std::to_string(count) +
+                      " voxels are NaN, infinite or beyond 1e36; they stay empty",
+                  count);
+    }
+}
 
 VolumeStatistics statistics(const Volume& volume, int channel, int bins) {
     bins = std::max(bins, 1);

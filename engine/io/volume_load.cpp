@@ -81,12 +81,7 @@ void count_non_finite(const Volume& volume, Log& log) {
         std::memcpy(&value, volume.voxels.data() + at, sizeof value);
         count += is_number(value) ? 0 : 1;
     }
-    if (count > 0) {
-        log.fault(
-            "volume.non_finite",
-            volume.source + ": " + std::to_string(count) + " voxels are NaN, infinite or beyond 1e36; they stay empty",
-            count);
-    }
+    report_no_numbers(volume, count, log);
 }
 
 }  // namespace

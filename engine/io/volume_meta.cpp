@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "engine/core/error.h"
 #include "engine/io/volume_itk.h"
@@ -164,6 +165,10 @@ void take_orientation(VolumeHead& head, const ItkHeader& itk, const Reading& rea
 std::vector<std::string> slice_names(std::string_view name, const MetaHeader& header, const VolumeHead& head,
                                      const Reading& reading) {
     const auto slices = static_cast<std::size_t>(head.volume.grid.dims.z);
+    std::optional<NumberedFiles> numbered;
+    if (name.find('%') != std::string_view::npos) {
+        numbered = numbered_files(name, "ElementDataFile", reading);
+    }
     std::vector<std::string> names;
     if (name.starts_with("LIST")) {
         constexpr std::size_t most_text = std::size_t{1} << 22U;
@@ -173,19 +178,10 @@ std::vector<std::string> slice_names(std::string_view name, const MetaHeader& he
         while (!rest.empty() && names.size() < slices) {
             names.emplace_back(trim(take_line(rest)));
         }
-    } else if (const std::size_t percent = name.find('%'); percent != std::string_view::npos) {
-        const std::string_view pattern = name.substr(0, name.find_first_of(" \t"));
-        const std::size_t kind = pattern.find('d', percent);
-        const std::string_view width = pattern.substr(percent + 1, kind - percent - 1);
-        const std::vector<double> n = numbers_of(name.substr(pattern.size()), "ElementDataFile", reading);
-        for (double number = n[0]; number <= n[1] && names.size() <= slices; number += n[2]) {
-            std::string digits = std::to_string(static_cast<int>(number));
-            const std::size_t wide =
-                width.empty() ? 0 : static_cast<std::size_t>(std::stoi(std::string(width)));
-            digits.insert(0, wide > digits.size() ? wide - digits.size() : 0,
-                          width.starts_with('0') ? '0' : ' ');
-            names.push_back(std::string(pattern.substr(0, percent)) + digits +
-                            std::string(pattern.substr(kind + 1)));
+    } else if (numbered) {
+        const std::size_t count = numbered->count();
+        for (std::size_t file = 0; file < count && names.size() <= slices; ++file) {
+            names.push_back(numbered->name(file));
         }
     } else {
         return names;
@@ -212,9 +208,6 @@ Volume read_payload(const VolumeHead& head, const MetaHeader& header, const Read
     const std::string_view header_size = header.get({"HeaderSize"});
     const bool plain = !header.fields.contains("BinaryData") || header.is_true({"BinaryData"});
     if (!plain || name.starts_with("LIST") || name.find('%') != std::string::npos) {
-        if (name.find('%') != std::string::npos) {
-            expect_numbered_files(name, "ElementDataFile", reading);
-        }
         expect_slices(slice_names(name, header, head, reading), reading);
         require_plausible(head, reading);
         const std::vector<std::byte> voxels = read_itk_voxels(ItkFormat::meta, head, reading);

@@ -49,7 +49,13 @@ std::vector<double> numbers_of(std::string_view text, std::string_view field, co
     return numbers;
 }
 
-void expect_numbered_files(std::string_view text, std::string_view field, const Reading& reading) {
+std::string NumberedFiles::name(std::size_t file) const {
+    std::string digits = std::to_string(first + static_cast<int>(file) * step);
+    digits.insert(0, width > digits.size() ? width - digits.size() : 0, zeros ? '0' : ' ');
+    return before + digits + after;
+}
+
+NumberedFiles numbered_files(std::string_view text, std::string_view field, const Reading& reading) {
     std::string_view rest = text;
     const std::string_view pattern = take_word(rest);
     const std::size_t percent = pattern.find('%');
@@ -67,6 +73,14 @@ void expect_numbered_files(std::string_view text, std::string_view field, const 
         reading.fail(std::string(field) + ": '" + printable(text) +
                      "' is no name with one %d and the numbers of the first file, the last and the step");
     }
+    const std::string width(pattern.substr(percent + 1, kind - percent - 1));
+    return {.before = std::string(pattern.substr(0, percent)),
+            .after = std::string(pattern.substr(kind + 1)),
+            .width = width.empty() ? 0 : static_cast<std::size_t>(std::stoi(width)),
+            .zeros = width.starts_with('0'),
+            .first = static_cast<int>(numbers[0]),
+            .last = static_cast<int>(numbers[1]),
+            .step = static_cast<int>(numbers[2])};
 }
 
 double one_number(std::string_view text, std::string_view field, const Reading& reading) {

@@ -103,25 +103,23 @@ Executor::Cleared Executor::clear(PassState& state, const PlanPass& pass, const 
         }
         const PlanContent& content = plan_.contents[*binding.content];
         const bool continues = !is_new(state, binding);
-        const bool overwrites = state.ports[state.port_of_binding[b]].overwrites;
-        const bool overwritten = overwrites && state.work.kind == Work::Kind::all;
-        const bool sets_region = overwrites && drawn.rects().size() == 1;
+        const bool sets_region =
+            state.ports[state.port_of_binding[b]].overwrites && drawn.rects().size() == 1;
         TargetPool::Backdrop unknown;
         TargetPool::Backdrop& backdrop = content.texture ? pool_.backdrop(*content.texture) : unknown;
         state.drawn_keys[b] = schedule_.contents()[*binding.content].key;
         backdrop.key = state.drawn_keys[b];
-        if (continues || overwritten || cleared.kept) {
-            backdrop.known = backdrop.known && !overwritten;
+        if (continues || cleared.kept) {
             backdrop.drawn = around(backdrop.drawn, region);
             continue;
         }
         const bool has_backdrop = backdrop.known && backdrop.clear == content.clear;
         const PixelRect part = has_backdrop ? backdrop.drawn : all;
-        if (fills_after(state, pass, b)) {
+        if (sets_region) {
+            clear_outside(target, index, stored(content), part, region);
+        } else if (fills_after(state, pass, b)) {
             cleared.uncovered = around(part, region);
             cleared.value = stored(content);
-        } else if (sets_region) {
-            clear_outside(target, index, stored(content), part, region);
         } else {
             clear_part(target, index, stored(content), part);
         }

@@ -32,7 +32,6 @@ class LoadedScene {
     [[nodiscard]] const Scene& scene() const { return scene_; }
     /// Targets that the frames bring, as set() was told.
     [[nodiscard]] const std::vector<ImportedTarget>& expected() const { return expected_; }
-    /// Whether a target of one frame is read by the next.
     /// Whether what a frame shows depends on the frames before it.
     [[nodiscard]] bool keeps_state() const;
 

@@ -56,11 +56,7 @@ TEST(BloodRelief, FillsHollowsToOneLevel) {
 TEST(BloodRelief, ARampTurnsDownhill) {
     // The texture lies askew on a slope; a relief that rises evenly tilts it, by as much in space as there.
     BloodStage stage(128);
-    const SurfaceChart chart{.high = {40.0, 30.0},
-                             .origin_px = {12.0, 14.0},
-                             .a_px = {1.9, 0.4},
-                             .b_px = {-0.1, 2.6},
-                             .cells = {3, 2}};
+    const SurfaceChart& chart = askew_chart;
     const glm::dvec3 gravity(4.0, -3.0, -8.0);
     set_sheet(stage, gravity, std::span(&chart, 1), 0.0);
     const glm::dvec2 ramp(0.02, 0.05);

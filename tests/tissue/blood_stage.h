@@ -24,6 +24,13 @@ struct SurfaceChart {
     glm::ivec2 cells{1};        ///< of the mesh
 };
 
+/// Lies askew in a texture of 128 texels a side, and is stretched.
+inline constexpr SurfaceChart askew_chart{.high = {40.0, 30.0},
+                                          .origin_px = {12.0, 14.0},
+                                          .a_px = {1.9, 0.4},
+                                          .b_px = {-0.1, 2.6},
+                                          .cells = {3, 2}};
+
 /// A parametric surface as an OBJ file, its charts joined where their corners meet.
 [[nodiscard]] std::string surface_obj(std::span<const SurfaceChart> charts, int size,
                                       const std::function<glm::dvec3(glm::dvec2)>& place);

@@ -32,11 +32,7 @@ void expect_finite(const Image& image) {
 TEST(GravityMap, IsExactOnAPlane) {
     BloodStage stage(128);
     // The texture lies askew on the plane, and is stretched.
-    const SurfaceChart chart{.high = {40.0, 30.0},
-                             .origin_px = {12.0, 14.0},
-                             .a_px = {1.9, 0.4},
-                             .b_px = {-0.1, 2.6},
-                             .cells = {3, 2}};
+    const SurfaceChart& chart = askew_chart;
     const glm::dvec3 a = glm::normalize(glm::dvec3(1.0, 0.2, -0.4));
     const glm::dvec3 b = glm::normalize(glm::cross(glm::dvec3(0.3, 1.0, 0.5), a));
     stage.surface(std::span(&chart, 1), [&](glm::dvec2 p) { return p.x * a + p.y * b; });
