@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <experimental/simd>
+#include <utility>
 
 #include "engine/core/error.h"
 #include "engine/core/pixel_index.h"
@@ -112,8 +113,35 @@ static_assert(2 * DistanceGrid::margin_x > distance_reach);
 using Bricks = std::experimental::native_simd<std::uint8_t>;
 constexpr int lanes = static_cast<int>(Bricks::size());
 
-/// Rows of bricks in memory. The room before and behind each of them holds what limits nothing: the kind of
-/// the brick at that end, or the greatest size. So ends need no care.
+Bricks load(const std::uint8_t* from) {
+    return {from, std::experimental::element_aligned};
+}
+
+void store(const Bricks& bricks, std::uint8_t* to) {
+    bricks.copy_to(to, std::experimental::element_aligned);
+}
+
+/// What the search keeps of a brick: kind_step * kind + lack, where lack = distance_reach - size. The size of
+/// the least cube is then the greatest lack; bits of another kind, which an exclusive or leaves standing, are
+/// more than any lack; and another exclusive or makes a texel of it.
+Bricks texels_of(const Bricks& bricks) {
+    static_assert(kind_step == distance_reach + 1 && (kind_step & distance_reach) == 0);
+    return bricks ^ Bricks(distance_reach);
+}
+
+/// Bits of the kind.
+Bricks kinds_of(const Bricks& bricks) {
+    return bricks & Bricks(static_cast<std::uint8_t>(~distance_reach));
+}
+
+/// What cubes lack that are larger by some bricks.
+Bricks larger(const Bricks& lack, int bricks) {
+    const Bricks by(static_cast<std::uint8_t>(bricks));
+    return max(lack, by) - by;
+}
+
+/// Rows of bricks in memory, with room before and behind each of them for what limits nothing: bricks of the
+/// kind at that end that lack nothing. So ends need no care.
 class Rows {
   public:
     explicit Rows(const glm::ivec3& dims)
@@ -135,21 +163,46 @@ class Rows {
             visit(x);
         }
     }
-    /// As texels have them, so that a size only has to be added.
-    void copy_kinds(const std::uint8_t* kinds, std::uint8_t* row) const {
-        const int count = dims_.x;  // a member could be among the bytes written, for all the compiler knows
-        for (int x = 0; x < count; ++x) {
-            row[x] = static_cast<std::uint8_t>(kind_step * kinds[x]);
+    /// The same against `step` (1 or -1), so that what lies ahead has been changed by no visit yet.
+    template <class Visit>
+    void each_before(int step, const Visit& visit) const {
+        for (int x = 0; x < padded_; x += lanes) {
+            visit(step > 0 ? x : padded_ - lanes - x);
         }
+    }
+    /// A row that lacks nothing.
+    void take_kinds(const std::uint8_t* kinds, std::uint8_t* row) const {
+        copy_lanes(kinds, row, [](const Bricks& kind) { return kind * Bricks(kind_step); });
         std::fill_n(row - room, room, row[0]);
         std::fill_n(row + dims_.x, padded_ - dims_.x + room, row[dims_.x - 1]);
     }
-    /// What lies behind a row's last brick in the same lanes is room, too.
-    void clear_end(std::uint8_t* sizes) const {
-        std::fill_n(sizes + dims_.x, padded_ - dims_.x, std::uint8_t{distance_reach});
+    /// Makes room of the brick before and of those behind a row that `kinds` are the kinds of.
+    void clear_ends(const std::uint8_t* kinds, std::uint8_t* row) const {
+        row[-1] = kinds[-1];
+        std::copy_n(kinds + dims_.x, padded_ - dims_.x + 1, row + dims_.x);
+    }
+    void give_texels(const std::uint8_t* row, std::uint8_t* texels) const {
+        copy_lanes(row, texels, texels_of);
     }
 
   private:
+    /// A row of bricks through `change`, where there may be no room behind either of the two.
+    template <class Change>
+    void copy_lanes(const std::uint8_t* from, std::uint8_t* to, const Change& change) const {
+        const int last = dims_.x - lanes;
+        for (int x = 0; x < last; x += lanes) {
+            store(change(load(from + x)), to + x);
+        }
+        if (last >= 0) {
+            store(change(load(from + last)), to + last);  // some of them once more
+            return;
+        }
+        std::array<std::uint8_t, lanes> few{};
+        std::copy_n(from, dims_.x, few.data());
+        store(change(load(few.data())), few.data());
+        std::copy_n(few.data(), dims_.x, to);
+    }
+
     static constexpr int room = std::max(lanes, distance_reach / 2 + 1);  ///< as far as one step looks
 
     glm::ivec3 dims_;
@@ -157,88 +210,68 @@ class Rows {
     int stride_;
 };
 
-Bricks load(const std::uint8_t* from) {
-    return {from, std::experimental::element_aligned};
-}
-
-void store(const Bricks& bricks, std::uint8_t* to) {
-    bricks.copy_to(to, std::experimental::element_aligned);
-}
-
-/// Bricks from each brick to the next one of another kind in its row, up (`step` 1) or down (-1) the row.
-/// Ways of 1, 2, 4, 8 and 16 find it for all bricks at once; all rows are done with one way before the next,
-/// since what was only just written is slow to read again.
+/// What bricks lack because of the next one of another kind in their row, up (`step` 1) or down (-1) the row.
+/// Ways of 1, 2, 4, 8 and 16 find it for all bricks at once; all rows of a layer are done with one way before
+/// the next, since what was only just written is slow to read again. `along` begins as `kinds`.
 void find_along(const glm::ivec3& dims, const Rows& rows, const std::uint8_t* kinds, int step,
                 std::uint8_t* along) {
-    each_row(dims, [&](int y, int z) {
-        const std::uint8_t* own = rows.row(kinds, y, z);
-        std::uint8_t* row = rows.row(along, y, z);
-        rows.each([&](int x) {
-            Bricks size(distance_reach);
-            where(load(own + x) != load(own + x + step), size) = 1;
-            store(size, row + x);
-        });
-    });
-    for (int way = 1; way <= distance_reach / 2 + 1; way *= 2) {
-        each_row(dims, [&](int y, int z) {
+    for (int z = 0; z < dims.z; ++z) {
+        for (int y = 0; y < dims.y; ++y) {
+            const std::uint8_t* own = rows.row(kinds, y, z);
             std::uint8_t* row = rows.row(along, y, z);
             rows.each([&](int x) {
-                const Bricks ahead = load(row + x + step * way) + static_cast<std::uint8_t>(way);
-                store(min(load(row + x), ahead), row + x);
+                Bricks lack(0);
+                where(load(own + x) != load(own + x + step), lack) = distance_reach - 1;
+                store(load(own + x) | lack, row + x);
             });
-        });
+        }
+        for (int way = 1; way <= distance_reach / 2 + 1; way *= 2) {
+            for (int y = 0; y < dims.y; ++y) {
+                std::uint8_t* row = rows.row(along, y, z);
+                rows.each_before(step, [&](int x) {
+                    const Bricks ahead = load(row + x + step * way) & Bricks(distance_reach);
+                    const Bricks here = load(row + x);
+                    const Bricks kind = kinds_of(here);
+                    store(kind | max(here ^ kind, larger(ahead, way)), row + x);
+                });
+            }
+        }
     }
 }
 
-/// A row of bricks: their kinds, and the sizes of the cubes that begin at them.
-struct Row {
-    const std::uint8_t* kinds;
-    const std::uint8_t* sizes;
-};
-
-/// Sizes of some bricks of a row where they are of the kinds given, else 0.
-Bricks sizes_of(const Bricks& kinds, const Row& row, int x) {
-    Bricks sizes = load(row.sizes + x);
-    where(load(row.kinds + x) != kinds, sizes) = 0;
-    return sizes;
-}
-
-/// Sizes for rays that go along each axis as `up` says. A cube ends at the row's next brick of another kind,
+/// Bricks for rays that go along each axis as `up` says. A cube ends at the row's next brick of another kind,
 /// and is larger by one than the least of those that begin at the six neighbours ahead in other rows. Bricks
-/// are visited from the far end, so that these are known; two layers of sizes are kept.
+/// are visited from the far end, so that these are known; two layers are kept. A neighbour row outside of the
+/// grid limits nothing: the kinds of the row itself take its place.
 template <class Write>
-void sizes_one_way(const glm::ivec3& dims, const Rows& rows, const std::uint8_t* kinds,
+void cubes_one_way(const glm::ivec3& dims, const Rows& rows, const std::uint8_t* kinds,
                    const std::uint8_t* along, const glm::bvec3& up, std::uint8_t* layers,
                    const Write& write) {
-    const auto flip = [](int ahead, int count, bool upwards) { return upwards ? ahead : count - 1 - ahead; };
-    const auto row_of = [&](int y, int z) {
-        return Row{rows.row(kinds, flip(y, dims.y, up.y), flip(z, dims.z, up.z)), rows.row(layers, y, z % 2)};
-    };
     const int step = up.x ? 1 : -1;
-    std::array<Row, 3> ahead{};
     for (int z = dims.z - 1; z >= 0; --z) {
         for (int y = dims.y - 1; y >= 0; --y) {
-            std::size_t known = 0;
-            for (const glm::ivec2& next :
-                 {glm::ivec2(y, z + 1), glm::ivec2(y + 1, z + 1), glm::ivec2(y + 1, z)}) {
-                if (next.x < dims.y && next.y < dims.z) {
-                    ahead[known++] = row_of(next.x, next.y);
-                }
-            }
-            const Row own = row_of(y, z);
-            const glm::ivec2 place(flip(y, dims.y, up.y), flip(z, dims.z, up.z));
-            const std::uint8_t* limit = rows.row(along, place.x, place.y);
-            std::uint8_t* sizes = rows.row(layers, y, z % 2);
+            const glm::ivec2 place(up.y ? y : dims.y - 1 - y, up.z ? z : dims.z - 1 - z);
+            const std::uint8_t* own_kinds = rows.row(kinds, place.x, place.y);
+            const std::uint8_t* own_along = rows.row(along, place.x, place.y);
+            const auto ahead = [&](int dy, int dz) {
+                const bool inside = y + dy < dims.y && z + dz < dims.z;
+                return inside ? rows.row(std::as_const(layers), y + dy, (z + dz) % 2) : own_kinds;
+            };
+            const std::uint8_t* beside = ahead(1, 0);
+            const std::uint8_t* above = ahead(0, 1);
+            const std::uint8_t* across = ahead(1, 1);
+            std::uint8_t* row = rows.row(layers, y, z % 2);
             rows.each([&](int x) {
-                const Bricks kind = load(own.kinds + x);
-                Bricks least = load(limit + x) - 1;
-                for (const Row& row : std::span(ahead).first(known)) {
-                    least = min(least, min(sizes_of(kind, row, x), sizes_of(kind, row, x + step)));
-                }
-                store(least + 1, sizes + x);
+                const Bricks here = load(own_along + x);
+                const Bricks kind = kinds_of(here);
+                const auto lack = [&](const std::uint8_t* from) {
+                    return max(load(from + x) ^ kind, load(from + x + step) ^ kind);
+                };
+                const Bricks most = max(max(lack(beside), lack(above)), lack(across));
+                store(kind | max(here ^ kind, larger(min(most, Bricks(distance_reach)), 1)), row + x);
             });
-            rows.clear_end(sizes);
-            write(place.x, place.y, own);
+            rows.clear_ends(own_kinds, row);
+            write(place.x, place.y, row);
         }
     }
 }
@@ -276,9 +309,9 @@ void CubesAhead::take(glm::ivec3 dims, std::span<const std::uint8_t> kinds) {
     texels_.resize(kinds.size());
     const Rows rows(dims_);
     kinds_.resize(rows.bytes(dims_.z));
-    sizes_.assign(rows.bytes(2), distance_reach);
+    layers_.resize(rows.bytes(2));
     each_row(dims_, [&](int y, int z) {
-        rows.copy_kinds(&kinds[voxel_index({0, y, z}, dims_)], rows.row(kinds_.data(), y, z));
+        rows.take_kinds(&kinds[voxel_index({0, y, z}, dims_)], rows.row(kinds_.data(), y, z));
     });
 }
 
@@ -287,17 +320,13 @@ std::span<const std::uint8_t> CubesAhead::texels(const glm::bvec3& up) {
     const std::size_t side = up.x ? 1 : 0;
     std::vector<std::uint8_t>& along = along_[side];
     if (!along_known_[side]) {
-        along.assign(rows.bytes(dims_.z), distance_reach);
+        along = kinds_;
         find_along(dims_, rows, kinds_.data(), up.x ? 1 : -1, along.data());
         along_known_[side] = true;
     }
-    sizes_one_way(dims_, rows, kinds_.data(), along.data(), up, sizes_.data(),
-                  [&](int y, int z, const Row& row) {
-                      std::uint8_t* target = &texels_[voxel_index({0, y, z}, dims_)];
-                      const int count = dims_.x;  // as in copy_kinds()
-                      for (int x = 0; x < count; ++x) {
-                          target[x] = static_cast<std::uint8_t>(row.kinds[x] + row.sizes[x]);
-                      }
+    cubes_one_way(dims_, rows, kinds_.data(), along.data(), up, layers_.data(),
+                  [&](int y, int z, const std::uint8_t* row) {
+                      rows.give_texels(row, &texels_[voxel_index({0, y, z}, dims_)]);
                   });
     return texels_;
 }

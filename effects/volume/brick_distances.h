@@ -44,7 +44,7 @@ class CubesAhead {
     std::vector<std::uint8_t> kinds_;
     std::array<std::vector<std::uint8_t>, 2> along_;  ///< down, up
     std::array<bool, 2> along_known_{};
-    std::vector<std::uint8_t> sizes_;
+    std::vector<std::uint8_t> layers_;
     std::vector<std::uint8_t> texels_;
 };
 
