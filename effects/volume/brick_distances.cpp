@@ -176,10 +176,10 @@ class Rows {
         std::fill_n(row - room, room, row[0]);
         std::fill_n(row + dims_.x, padded_ - dims_.x + room, row[dims_.x - 1]);
     }
-    /// Makes room of the brick before and of those behind a row that `kinds` are the kinds of.
+    /// Makes room again of what was written beyond the ends of a row that `kinds` are the kinds of.
     void clear_ends(const std::uint8_t* kinds, std::uint8_t* row) const {
         row[-1] = kinds[-1];
-        std::copy_n(kinds + dims_.x, padded_ - dims_.x + 1, row + dims_.x);
+        store(load(kinds + dims_.x), row + dims_.x);
     }
     void give_texels(const std::uint8_t* row, std::uint8_t* texels) const {
         copy_lanes(row, texels, texels_of);

@@ -181,13 +181,12 @@ struct Count {
     double needed = 0.0;  ///< by an oracle that knows which slabs change the picture
 };
 
-/// The generated head where it has been made, else a plainer one.
+/// Of the generated head.
 Count count_slabs(const nlohmann::json& points, bool skip) {
-    const std::filesystem::path file = std::filesystem::path(VISCERA_SOURCE_DIR) / "assets/volumes/head.mha";
     VolumeStage stage(slab_counting());
     Log log;
-    const LiveVolume volume(std::filesystem::exists(file) ? io::load_volume(file, {}, log)
-                                                          : head_volume(160, 240.0));
+    const LiveVolume volume(
+        io::load_volume(std::filesystem::path(VISCERA_SOURCE_DIR) / "assets/volumes/head.mha", {}, log));
     const nlohmann::json parameters{{"transfer_function", {{"points", points}}},
                                     {"sampling", {{"scheme", "gauss"}, {"skip", skip}}}};
     Count count;
