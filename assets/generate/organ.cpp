@@ -13,7 +13,7 @@ namespace viscera::assets {
 namespace {
 
 constexpr int abdomen_cells = 72;
-constexpr int organ_pixels = 1024;
+constexpr int organ_pixels = 2048;
 constexpr int abdomen_pixels = 512;
 
 nlohmann::ordered_json rounded(const glm::dvec3& p) {
@@ -64,10 +64,10 @@ void generate_organs(const std::filesystem::path& folder, std::uint64_t seed, in
     };
     picture("organ_diffuse.png", size, false, [&](const PaintPoint& p) { return paint.colour(p); });
     picture("organ_normal.png", size, false, [&](const PaintPoint& p) { return paint.normal(p); });
-    picture("organ_hint.png", size / 2, true, [&](const PaintPoint& p) { return paint.hint(p); });
-    picture("organ_cut.png", size, true, [&](const PaintPoint& p) { return paint.cut(p); });
+    picture("organ_hint.png", size / 4, true, [&](const PaintPoint& p) { return paint.hint(p); });
+    picture("organ_cut.png", size / 2, true, [&](const PaintPoint& p) { return paint.cut(p); });
 
-    write_exr(relief_picture(organ, paint, size / 2), folder / "images" / "organ_relief.exr");
+    write_exr(relief_picture(organ, paint, size / 4), folder / "images" / "organ_relief.exr");
 
     write_glb(make_hook(), folder / "meshes" / "hook.glb");
     const MeshData abdomen = mesh_abdomen(seed, abdomen_cells);

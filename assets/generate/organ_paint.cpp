@@ -164,7 +164,7 @@ glm::vec4 OrganPaint::colour(const PaintPoint& point) const {
         // Lobules: pale middles, dark borders; small vessels under the capsule.
         const glm::dvec2 lobule = cells(p / 1.5, seed_ + 2U);
         const double border = smooth(0.0, 0.35, lobule.y - lobule.x);
-        glm::dvec3 c = glm::mix(glm::dvec3(0.34, 0.085, 0.065), glm::dvec3(0.47, 0.155, 0.11), border);
+        glm::dvec3 c = glm::mix(glm::dvec3(0.375, 0.108, 0.078), glm::dvec3(0.425, 0.135, 0.096), border);
         c *= 1.0 + 0.16 * mottle + 0.06 * fine;
         c = glm::mix(c, glm::dvec3(0.30, 0.05, 0.06), 0.5 * vessels(p, 21.0, 0.045, seed_ + 3U));
         c = glm::mix(c, glm::dvec3(0.60, 0.33, 0.24),
@@ -198,7 +198,7 @@ double OrganPaint::relief(const glm::dvec3& p, const OrganTissue& tissue) const 
     if (tissue.liver > 0.0) {
         const glm::dvec2 lobule = cells(p / 1.5, seed_ + 2U);
         height += tissue.liver *
-                  (0.05 * smooth(0.0, 0.5, lobule.y - lobule.x) + 0.10 * noise(p, 4.0, 2, seed_ + 10U));
+                  (0.012 * smooth(0.0, 0.5, lobule.y - lobule.x) + 0.10 * noise(p, 6.0, 2, seed_ + 10U));
     }
     if (tissue.gallbladder > 0.0) {
         height += tissue.gallbladder *
