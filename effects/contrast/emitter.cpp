@@ -22,7 +22,7 @@ PixelRect cover_of(const SpriteQuad& quad, glm::ivec2 size) {
         low = glm::min(low, p);
         high = glm::max(high, p);
     };
-    for (int corner = 0; corner < 4; ++corner) {
+    for (int corner = 0; corner < 4 && quad.width > 0.0; ++corner) {
         const glm::dvec2 uv = (glm::dvec2(corner & 1, corner >> 1) - base_in_sprite) * quad.width;
         extend(quad.base + uv.x * right + uv.y * quad.axis);
     }
@@ -73,14 +73,15 @@ EmitterFault place(const EmitterParams& emitter, const View& view, glm::ivec2 si
     quad.base = *base * pixels;
     quad.tip = *tip * pixels;
     quad.length = glm::length(quad.tip - quad.base);
-    // Less than a thousandth of a pixel: the smoke is seen exactly from the front or has no extent at all.
-    if (!(quad.length > 1e-3)) {
+    const glm::dvec3 axis = glm::normalize(emitter.tip_mm - emitter.base_mm);
+    if (!finite(axis) || !std::isfinite(quad.length)) {
         return EmitterFault::no_length;
     }
-    quad.axis = (quad.tip - quad.base) / quad.length;
-    quad.width = emitter.size * quad.length;
+    // Less than a thousandth of a pixel: seen exactly from the front, where no side is left.
+    const bool has_side = quad.length > 1e-3;
+    quad.axis = has_side ? (quad.tip - quad.base) / quad.length : glm::dvec2(0.0, 1.0);
+    quad.width = has_side ? emitter.size * quad.length : 0.0;
     quad.strength = emitter.strength;
-    const glm::dvec3 axis = glm::normalize(emitter.tip_mm - emitter.base_mm);
     const glm::dvec3 sight = view.direction_to(emitter.base_mm);
     const double cosine = std::abs(glm::dot(axis, sight));
     quad.angle_deg = std::atan2(glm::length(glm::cross(axis, sight)), cosine) * 180.0 / std::numbers::pi;

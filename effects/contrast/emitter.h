@@ -32,8 +32,8 @@ struct SpriteQuad {
     glm::dvec2 base{0.0};       ///< [pixels]
     glm::dvec2 tip{0.0};        ///< [pixels]
     glm::dvec2 axis{0.0, 1.0};  ///< unit vector from base to tip
-    double length = 0.0;        ///< from base to tip [pixels], > 0
-    double width = 0.0;         ///< of the side view [pixels]
+    double length = 0.0;        ///< from base to tip [pixels]
+    double width = 0.0;         ///< of the side view [pixels]; 0: none
     double front_width = 0.0;   ///< of the front view [pixels]; 0: none
     double front_weight = 0.0;  ///< 1.1 f, f in [0, 1]
     double strength = 1.0;

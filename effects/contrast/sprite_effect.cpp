@@ -16,15 +16,15 @@ namespace {
 constexpr std::size_t batch = 16;               // as glsl/contrast/sprites.vert
 constexpr std::size_t floats_per_emitter = 10;  // base, tip, edge, size
 
+std::string size_of(const Image& image) {
+    return std::to_string(image.width) + " x " + std::to_string(image.height);
+}
+
 gl::Texture upload(const gl::Functions& gl, std::span<const std::shared_ptr<const Image>> layers,
                    std::string_view label) {
     const Image& first = *layers.front();
     std::vector<unsigned short> texels;
     for (const std::shared_ptr<const Image>& layer : layers) {
-        if (layer->width != first.width || layer->height != first.height) {
-            throw Error(ErrorCode::scene, std::string(label),
-                        "all views of the smoke must have the same size");
-        }
         const int channels = layer->channels();
         const std::vector<float> values = to_floats(*layer);
         for (std::size_t i = 0; i < values.size(); i += static_cast<std::size_t>(channels)) {
@@ -57,6 +57,13 @@ struct SpriteEffect::Pictures {
         std::vector<std::shared_ptr<const Image>> images;
         for (const SpriteViewParams& view : params.views) {
             images.push_back(assets.image(view.image.path));
+            const Image& image = *images.back();
+            if (image.width != images.front()->width || image.height != images.front()->height) {
+                throw Error(ErrorCode::scene, "/views/" + std::to_string(images.size() - 1) + "/image",
+                            view.image.path.string() + " has " + size_of(image) +
+                                " pixels, the first view's picture " + size_of(*images.front()) +
+                                "; all views need the same size");
+            }
         }
         if (images.size() == 1) {
             images.push_back(
@@ -185,7 +192,7 @@ bool SpriteEffect::add_quads(Prepare& prepare) {
     quads_.clear();
     bool active = false;
     for (const EmitterParams& emitter : emitters_) {
-        if (frame.time_s < emitter.start_s || frame.time_s > emitter.stop_s) {
+        if (frame.time_s < emitter.start_s || frame.time_s > emitter.stop_s || emitter.strength == 0.0) {
             continue;
         }
         active = true;
@@ -290,9 +297,14 @@ void SpriteEffect::draw(const Pass& pass) {
             const glm::vec2 low(quad.cover.x, quad.cover.y);
             rect[i] = glm::vec4(low / size, (low + glm::vec2(quad.cover.width, quad.cover.height)) / size);
             source[i] = glm::vec3(quad.base / glm::dvec2(size), quad.strength);
-            base[i] = glm::vec4(whole_base, quad.base - whole_base);
+            // Of no width: counted from far outside the target, no pixel lies in the side view, and all of
+            // them far off from the base.
+            const bool side = quad.width > 0.0;
+            base[i] =
+                side ? glm::vec4(whole_base, quad.base - whole_base) : glm::vec4(-1e6F, -1e6F, 0.0F, 0.0F);
             tip[i] = glm::vec4(whole_tip, quad.tip - whole_tip);
-            axis[i] = glm::vec4(glm::vec2(quad.axis), 1.0 / quad.width, 1.0 / (0.3 * quad.length));
+            axis[i] = glm::vec4(glm::vec2(quad.axis), side ? 1.0 / quad.width : 1.0,
+                                side ? 1.0 / (0.3 * quad.length) : 1.0);
             view[i] = glm::vec3(layer_of(quad.angle_deg),
                                 quad.front_width > 0.0 ? 1.0 / quad.front_width : 0.0, quad.front_weight);
         }

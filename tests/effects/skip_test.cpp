@@ -153,7 +153,7 @@ TEST_F(Skip, NoSmokeWithoutAnEmitterInTheView) {
         expect("reflux", PassStatus::idle, reason);
         EXPECT_EQ(picture().data, without.data);
     }
-    // With smoke the picture is another; smoke of no strength draws and changes nothing.
+    // With smoke the picture is another; smoke of no strength is none.
     stage_.load(chain());
     render(0.7);
     EXPECT_TRUE(draws("reflux"));
@@ -162,6 +162,7 @@ TEST_F(Skip, NoSmokeWithoutAnEmitterInTheView) {
     faint["emitters"][0]["strength"] = 0;
     stage_.load(chain(tube_parameters(), faint));
     render(0.7);
+    expect("reflux", PassStatus::idle, "no emitter active");
     EXPECT_EQ(picture().data, without.data);
 }
 

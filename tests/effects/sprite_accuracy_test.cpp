@@ -140,6 +140,15 @@ TEST_P(SpriteAccuracy, OrthographicCamera) {
           {.camera = {{"kind", "orthographic"}, {"eye_mm", {40, -500, 20}}, {"height_mm", 80}}});
 }
 
+/// No side of it is left, but all of its front, as where it is turned away by a hair.
+TEST_P(SpriteAccuracy, SeenExactlyFromTheFront) {
+    const json camera{{"kind", "orthographic"}, {"eye_mm", {0, -500, 0}}, {"height_mm", 50}};
+    const json exactly{emitter({3, 4, 5}, {3, -10, 5})};
+    check("sprites, front", {.emitters = exactly, .camera = camera});
+    check("sprites, front, no masks", {.masks = false, .emitters = exactly, .camera = camera});
+    check("sprites, a hair beside it", {.emitters = {emitter({3, 4, 5}, {3.01, -10, 5})}, .camera = camera});
+}
+
 /// More than are drawn at once.
 TEST_P(SpriteAccuracy, ManyEmitters) {
     json emitters = json::array();

@@ -55,11 +55,12 @@ void draw_sprite(const Emitter& emitter, const Sprites& pictures, const SpriteCa
     const glm::dvec2 base = *base_uv * aspect;
     const glm::dvec2 tip = *tip_uv * aspect;
     const glm::dvec2 edge = *edge_uv * aspect;
-    const double length = glm::length(tip - base);
-    if (!(length > 0.0)) {
+    if (emitter.tip_mm == emitter.base_mm) {
         return;
     }
-    const glm::dvec2 up = (tip - base) / length;
+    const double length = glm::length(tip - base);
+    const bool has_side = length * target.height > 1e-3;
+    const glm::dvec2 up = has_side ? (tip - base) / length : glm::dvec2(0.0);
     const glm::dvec2 right(up.y, -up.x);
     const glm::dvec3 axis = glm::normalize(emitter.tip_mm - emitter.base_mm);
     const glm::dvec3 sight = camera.orthographic ? glm::normalize(camera.forward)
@@ -74,17 +75,21 @@ void draw_sprite(const Emitter& emitter, const Sprites& pictures, const SpriteCa
             const glm::dvec2 uv = target.uv(x, y);
             const glm::dvec2 place = uv * aspect;
             const glm::dvec2 d = place - base;
-            const glm::dvec2 side_uv =
-                glm::dvec2(glm::dot(right, d), glm::dot(up, d)) / (emitter.size * length) +
-                glm::dvec2(0.55, 0.15);
-            double smoke = blend_views(pictures.views, angle_deg, side_uv);
+            double smoke = 0.0;
+            if (has_side) {
+                const glm::dvec2 side_uv =
+                    glm::dvec2(glm::dot(right, d), glm::dot(up, d)) / (emitter.size * length) +
+                    glm::dvec2(0.55, 0.15);
+                smoke = blend_views(pictures.views, angle_deg, side_uv);
+            }
             if (front_weight > 0.0 && front_size > 0.0) {
                 smoke += 1.1 * front_weight * sample_inside(pictures.front, (place - tip) / front_size + 0.5);
             }
             const double sharp = pictures.mask_sharp.empty() ? 1.0 : sample_linear(pictures.mask_sharp, uv);
             const double blurred =
                 pictures.mask_blurred.empty() ? 1.0 : sample_linear(pictures.mask_blurred, uv);
-            const double mask = std::lerp(sharp, blurred, clamp01(glm::length(d) / (0.3 * length)));
+            const double further = has_side ? clamp01(glm::length(d) / (0.3 * length)) : 1.0;
+            const double mask = std::lerp(sharp, blurred, further);
             target.at(x, y) = std::max(target.at(x, y), clamp01(2.0 * mask * smoke * brightness));
         }
     }

@@ -92,7 +92,8 @@ struct SpriteCamera {
 /// front view's size, the mask's reach) are measured in target heights: UV scaled by (width / height, 1), so
 /// that sprites turn without shear on targets that are not square; on square ones this is UV. The sprite's
 /// axis is its +v. View direction: from the eye to the base. An emitter with base on tip, or with a point
-/// behind the eye or not finite, gives nothing; edge on tip gives no front sprite.
+/// behind the eye or not finite, gives nothing; edge on tip gives no front sprite, and an axis that is seen
+/// as a point (shorter than 1e-3 pixels) no side sprite.
 [[nodiscard]] Buffer sprites(std::span<const Emitter> emitters, const Sprites& pictures,
                              const SpriteCamera& camera, const Buffer& summary);
 
