@@ -161,7 +161,18 @@ class Body {
         return static_cast<std::size_t>(count);
     }
 
-    [[nodiscard]] std::size_t left() const { return bytes_.size(); }
+    /// Whether so many items of these properties can follow. Found out before memory is asked for: a lying
+    /// count could ask for more than there is. An empty list is its length alone, a number in text a digit
+    /// and a space.
+    [[nodiscard]] bool may_hold(std::uint64_t items, const std::vector<Property>& properties) const {
+        std::size_t least = 0;
+        for (const Property& property : properties) {
+            const Type& first = *(property.count_type != nullptr ? property.count_type : property.type);
+            least += storage_ == Storage::text ? 2 : first.bytes;
+        }
+        const std::size_t end = storage_ == Storage::text ? 1 : 0;  // behind the last number
+        return least == 0 || items <= (bytes_.size() + end) / least;
+    }
 
   private:
     double next_text() {
@@ -204,8 +215,7 @@ Store store_of(std::string_view name) {
 }
 
 void read_vertices(const Element& element, Body& body, MeshData& mesh) {
-    // Each vertex takes a byte at least, so a lying count is found out before memory is asked for.
-    if (element.count > body.left() || element.properties.empty()) {
+    if (element.properties.empty() || !body.may_hold(element.count, element.properties)) {
         throw std::runtime_error("it promises more vertices than it holds");
     }
     mesh.positions.assign(element.count, glm::vec3(0.0F));
@@ -248,7 +258,7 @@ void read_vertices(const Element& element, Body& body, MeshData& mesh) {
 /// Reads an element other than vertices; lists of corners become triangles.
 void read_element(const Element& element, Body& body, MeshData& mesh) {
     constexpr std::uint32_t out_of_range = std::numeric_limits<std::uint32_t>::max();
-    if (element.count > body.left() && !element.properties.empty()) {
+    if (!body.may_hold(element.count, element.properties)) {
         throw std::runtime_error("it promises more of '" + element.name + "' than it holds");
     }
     std::vector<std::uint32_t> corners;

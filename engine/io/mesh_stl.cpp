@@ -1,5 +1,5 @@
 #include <bit>
-#include <cstring>
+#include <numeric>
 #include <stdexcept>
 
 #include "engine/core/error.h"
@@ -45,12 +45,12 @@ std::vector<glm::vec3> read_binary(std::string_view bytes) {
     return corners;
 }
 
-std::vector<glm::vec3> read_text(std::string_view bytes) {
-    if (take_word(bytes) != "solid") {
-        throw std::runtime_error("it is neither text nor of the size that its header says");
-    }
-    static_cast<void>(take_line(bytes));
-    std::vector<glm::vec3> corners;
+/// One solid of a text file, from behind the word "solid" to its end; the rest stays in `bytes`.
+RawMesh read_solid(std::string_view& bytes) {
+    RawMesh solid;
+    std::string_view line = take_line(bytes);
+    solid.mesh.name = take_word(line);
+    std::vector<glm::vec3>& corners = solid.mesh.positions;
     std::string_view word = take_word(bytes);
     for (; !word.empty() && word != "endsolid"; word = take_word(bytes)) {
         if (word == "endfacet" && corners.size() % 3 != 0) {
@@ -73,26 +73,50 @@ std::vector<glm::vec3> read_text(std::string_view bytes) {
     if (word.empty()) {
         throw std::runtime_error("it is cut off");
     }
-    return corners;
+    static_cast<void>(take_line(bytes));  // the name again
+    return solid;
+}
+
+/// Every solid of a text file: programs write one for each part of a vessel.
+std::vector<RawMesh> read_text(std::string_view bytes) {
+    std::vector<RawMesh> solids;
+    std::string_view word = take_word(bytes);
+    if (word != "solid") {
+        throw std::runtime_error("it is neither text nor of the size that its header says");
+    }
+    for (; word == "solid"; word = take_word(bytes)) {
+        solids.push_back(read_solid(bytes));
+    }
+    if (!word.empty()) {
+        throw std::runtime_error("'" + std::string(word.substr(0, 20)) + "' follows a solid's end");
+    }
+    return solids;
 }
 
 }  // namespace
 
 std::vector<RawMesh> read_stl(const std::filesystem::path& file, Log&) {
     const std::string bytes = read_file(file);
-    RawMesh raw;
-    raw.mesh.name = file.stem().string();
-    raw.weld = true;
+    std::vector<RawMesh> solids;
     try {
-        raw.mesh.positions = is_binary(bytes) ? read_binary(bytes) : read_text(bytes);
+        if (is_binary(bytes)) {
+            solids.emplace_back().mesh.positions = read_binary(bytes);
+        } else {
+            solids = read_text(bytes);
+        }
     } catch (const std::runtime_error& error) {
         throw Error(ErrorCode::file, file.string(), std::string("is no readable STL file: ") + error.what());
     }
-    raw.mesh.indices.resize(raw.mesh.positions.size() / 3 * 3);
-    for (std::size_t i = 0; i < raw.mesh.indices.size(); ++i) {
-        raw.mesh.indices[i] = static_cast<std::uint32_t>(i);
+    for (RawMesh& solid : solids) {
+        MeshData& mesh = solid.mesh;
+        if (solids.size() == 1 || mesh.name.empty()) {
+            mesh.name = file.stem().string();
+        }
+        solid.weld = true;
+        mesh.indices.resize(mesh.positions.size() / 3 * 3);
+        std::iota(mesh.indices.begin(), mesh.indices.end(), 0U);
     }
-    return {std::move(raw)};
+    return solids;
 }
 
 }  // namespace viscera::io

@@ -216,9 +216,40 @@ TEST_F(Meshes, AHeaderThatPromisesTooMuchIsRefused) {
     std::string ply = test::tetra_ply_binary();
     ply.replace(ply.find("vertex 4"), 8, "vertex 4000000000");
     EXPECT_THAT(message_of([&] { load("a.ply", ply); }), HasSubstr("promises more vertices than it holds"));
+    // Enough bytes for as many vertices of one property, but not of a thousand.
+    std::string wide = "ply\nformat binary_little_endian 1.0\nelement vertex 4000\n";
+    for (int i = 0; i < 1000; ++i) {
+        wide += "property float p" + std::to_string(i) + "\n";
+    }
+    wide += "end_header\n" + std::string(16'000, '\0');
+    EXPECT_THAT(message_of([&] { load("a.ply", wide); }), HasSubstr("promises more vertices than it holds"));
+    const std::string text = "ply\nformat ascii 1.0\nelement vertex %\nproperty float x\nend_header\n1 2 3";
+    const auto counted = [&](const char* count) {
+        return std::string(text).replace(text.find('%'), 1, count);
+    };
+    EXPECT_EQ(load("a.ply", counted("3")).at(0).triangle_count(), 0U);
+    EXPECT_THAT(message_of([&] { load("a.ply", counted("4")); }), HasSubstr("promises more vertices"));
     std::string stl = test::tetra_stl();
     stl[80] = 5;
     EXPECT_THAT(message_of([&] { load("a.stl", stl); }), HasSubstr("nor of the size that its header says"));
+}
+
+TEST_F(Meshes, AnStlTextMayHoldSeveralSolids) {
+    const std::string one = test::tetra_stl_text();
+    std::string other = one;
+    for (std::size_t at = other.find("solid "); at != std::string::npos; at = other.find("solid ", at + 1)) {
+        other.replace(at, other.find('\n', at) - at, "solid left renal");
+    }
+    const std::vector<MeshData> both = load("a.stl", one + other);
+    ASSERT_EQ(both.size(), 2U);
+    EXPECT_EQ(both[1].name, "left");
+    EXPECT_EQ(both[0].triangle_count(), 4U);
+    EXPECT_EQ(both[1].triangle_count(), 4U);
+    EXPECT_EQ(load("a.stl", one + other, {.name_filter = "left"}).size(), 1U);
+    EXPECT_THAT(message_of([&] { load("a.stl", one + "facet"); }),
+                HasSubstr("'facet' follows a solid's end"));
+    EXPECT_THAT(message_of([&] { load("a.stl", one + one.substr(0, one.size() / 2)); }),
+                HasSubstr("is cut off"));
 }
 
 TEST_F(Meshes, ErrorsNameTheFile) {
