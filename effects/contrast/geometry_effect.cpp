@@ -73,8 +73,6 @@ struct GeometryEffect::GpuVessel {
     std::shared_ptr<const Vessel> vessel;  ///< known by its address, which thus stays its own
     gl::Mesh mesh;
     std::uint64_t host_version = 0;
-    std::optional<gl::Texture> bolus_table;
-    std::uint64_t bolus_key = 0;
 };
 
 GeometryEffect::GeometryEffect(Outputs outputs) : outputs_(outputs) {
@@ -227,6 +225,7 @@ Work GeometryEffect::prepare(Prepare& prepare) {
         cloud_bit_ = port_bit("cloud");
         distance_bit_ = port_bit("distance");
         bolus_.emplace(params_.bolus, prepare.log());
+        bolus_table_key_ = Hash().bytes(std::as_bytes(std::span(bolus_->table().samples))).value();
         vessel_.reset();
         host_density_.clear();
     }
@@ -334,13 +333,14 @@ void GeometryEffect::draw(const Pass& pass) {
     program.set("u_threshold", static_cast<float>(params_.cloud.threshold));
     if (variant_.scalar == Scalar::arrival_table) {
         const BolusTable& table = bolus_->table();
-        if (!gpu.bolus_table || gpu.bolus_key != parameters_key_) {
-            gpu.bolus_table.emplace(gl::Texture::make_2d(pass.gl(), static_cast<int>(table.samples.size()), 1,
-                                                         PixelFormat::r32f, "bolus table"));
-            gpu.bolus_table->upload(std::as_bytes(std::span(table.samples)));
-            gpu.bolus_key = parameters_key_;
-        }
-        pass.bind(program, "u_bolus_table", *gpu.bolus_table, gl::Filter::nearest);
+        // Passes that draw one vessel at different times share the table, too.
+        const gl::Texture& samples = *pass.assets().shared<gl::Texture>(bolus_table_key_, [&] {
+            auto made = std::make_shared<gl::Texture>(gl::Texture::make_2d(
+                pass.gl(), static_cast<int>(table.samples.size()), 1, PixelFormat::r32f, "bolus table"));
+            made->upload(std::as_bytes(std::span(table.samples)));
+            return made;
+        });
+        pass.bind(program, "u_bolus_table", samples, gl::Filter::nearest);
         program.set("u_bolus_first", static_cast<float>(table.first_s));
         program.set("u_bolus_inv_step", static_cast<float>(1.0 / table.step_s));
     } else if (variant_.scalar == Scalar::arrival) {

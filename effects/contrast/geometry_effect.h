@@ -85,6 +85,7 @@ class GeometryEffect final : public Effect {
     std::uint32_t cloud_bit_ = 0;
     std::uint32_t distance_bit_ = 0;
     std::optional<Bolus> bolus_;
+    std::uint64_t bolus_table_key_ = 0;
     std::shared_ptr<const Vessel> vessel_;
     std::vector<float> host_density_;
     std::uint64_t host_version_ = 0;

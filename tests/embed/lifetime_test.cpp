@@ -34,6 +34,22 @@ TEST_P(Embedded, ARendererLeavesNoObjectBehind) {
     EXPECT_EQ(recorder.alive(), Alive{});
 }
 
+/// Passes that share a vessel and a table draw them at different times.
+TEST_P(Embedded, AWarmFrameOfAMovingBolusMakesNoObject) {
+    const nlohmann::json table{{{"time_s", 0}, {"density", 0}}, {{"time_s", 1}, {"density", 1}}};
+    const std::vector<SceneOverride> changes{{"/resolution", {48, 48}},
+                                             {"/shared/coronary/bolus/table", table}};
+    Recorder recorder(context().proc());
+    Renderer renderer(recorder.proc(), registry(), options());
+    renderer.set_scene(load_scene(VISCERA_SOURCE_DIR "/assets/scenes/angiography.json", changes));
+    for (const double time_s : {1.5, 1.6}) {
+        renderer.render(renderer.still(time_s));
+    }
+    const std::size_t made = recorder.made();
+    renderer.render(renderer.still(1.7));
+    EXPECT_EQ(recorder.made(), made);
+}
+
 TEST_P(Embedded, ARendererThatFailsLeavesNoObjectBehind) {
     Recorder recorder(context().proc());
     {
