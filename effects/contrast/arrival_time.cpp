@@ -6,6 +6,7 @@
 
 #include "effects/contrast/density.h"
 #include "effects/contrast/tube_tree.h"
+#include "engine/io/mesh.h"
 
 namespace viscera::contrast {
 
@@ -25,6 +26,20 @@ std::vector<std::optional<TubeFoot>> vertex_feet(const CentrelineGraph& graph,
     return feet;
 }
 
+void report_apart(const CentrelineGraph& graph, std::span<const std::optional<TubeFoot>> feet, Log& log) {
+    constexpr double most_radii = 3.0;
+    const auto apart = static_cast<std::size_t>(std::ranges::count_if(feet, [](const auto& foot) {
+        return foot && foot->distance_mm > most_radii * (foot->distance_mm - foot->wall_mm);
+    }));
+    if (2 * apart > feet.size()) {
+        log.fault("contrast.centreline_apart",
+                  graph.name +
+                      ": most of the vessel's vertices are more than three radii away from it; has "
+                      "the mesh another unit or frame?",
+                  apart);
+    }
+}
+
 std::vector<float> vertex_arrival(const CentrelineGraph& graph, const FlowNetwork& network,
                                   std::span<const std::optional<TubeFoot>> feet, Log& log) {
     std::vector<float> arrival(feet.size(), unreached_s);
@@ -41,7 +56,8 @@ std::vector<float> vertex_arrival(const CentrelineGraph& graph, const FlowNetwor
     if (unreached > 0) {
         log.fault(
             "contrast.unreached_vertices",
-            "parts of the vessel mesh lie at centreline edges that no contrast reaches; they stay clear",
+            graph.name +
+                ": parts of the vessel mesh lie at edges of it that no contrast reaches; they stay clear",
             unreached);
     }
     return arrival;
@@ -60,17 +76,25 @@ std::vector<float> vertex_radius(const CentrelineGraph& graph,
     return radius;
 }
 
-void smooth_arrival(std::span<float> arrival_s, std::span<const std::uint32_t> indices, int rounds) {
+void smooth_arrival(std::span<float> arrival_s, std::span<const glm::vec3> positions_mm,
+                    std::span<const std::uint32_t> indices, int rounds) {
+    if (rounds <= 0) {
+        return;
+    }
+    const std::vector<std::uint32_t> place = io::first_at_same_place(positions_mm);
     std::vector<double> sum(arrival_s.size());
     std::vector<int> count(arrival_s.size());
-    const auto reached = [&](std::uint32_t v) { return v < arrival_s.size() && arrival_s[v] < unreached_s; };
+    const auto reached = [&](std::uint32_t v) { return arrival_s[v] < unreached_s; };
     for (int round = 0; round < rounds; ++round) {
         std::ranges::fill(sum, 0.0);
         std::ranges::fill(count, 0);
         for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
+            if (std::max({indices[i], indices[i + 1], indices[i + 2]}) >= arrival_s.size()) {
+                continue;
+            }
             for (std::size_t corner = 0; corner < 3; ++corner) {
-                const std::uint32_t a = indices[i + corner];
-                const std::uint32_t b = indices[i + (corner + 1) % 3];
+                const std::uint32_t a = place[indices[i + corner]];
+                const std::uint32_t b = place[indices[i + (corner + 1) % 3]];
                 if (reached(a) && reached(b)) {
                     sum[a] += static_cast<double>(arrival_s[b]);
                     sum[b] += static_cast<double>(arrival_s[a]);
@@ -80,7 +104,9 @@ void smooth_arrival(std::span<float> arrival_s, std::span<const std::uint32_t> i
             }
         }
         for (std::size_t v = 0; v < arrival_s.size(); ++v) {
-            if (count[v] > 0) {
+            if (place[v] != v) {
+                arrival_s[v] = arrival_s[place[v]];  // the first of its place stands before it
+            } else if (count[v] > 0) {
                 arrival_s[v] =
                     static_cast<float>(0.5 * (static_cast<double>(arrival_s[v]) + sum[v] / count[v]));
             }

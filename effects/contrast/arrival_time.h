@@ -25,6 +25,10 @@ namespace viscera::contrast {
 [[nodiscard]] std::vector<std::optional<TubeFoot>> vertex_feet(const CentrelineGraph& graph,
                                                                std::span<const glm::vec3> positions_mm);
 
+/// Says, under "contrast.centreline_apart", where more than half of the vertices lie farther from the
+/// centreline than three radii: each vertex has a nearest edge, but then it tells nothing.
+void report_apart(const CentrelineGraph& graph, std::span<const std::optional<TubeFoot>> feet, Log& log);
+
 /// Arrival time [s] of each foot, linear along the edge between the times of its nodes; `unreached_s` where
 /// no contrast comes, counted under "contrast.unreached_vertices". network must be the result of solve_flow()
 /// for this graph.
@@ -38,8 +42,11 @@ namespace viscera::contrast {
 /// Evens out arrival times over the mesh: in each round every vertex takes the mean of itself and the mean of
 /// its neighbours. Centrelines are jagged, so feet jump by some millimetres on the inside of a bend, and the
 /// front would be ragged there; two or three rounds make it whole. Vertices that are not reached neither give
-/// nor take, and two vessels that only touch share no edge, so nothing leaks between them. indices: 3 per
-/// triangle; triangles with an index out of range are passed over. rounds <= 0: nothing happens.
-void smooth_arrival(std::span<float> arrival_s, std::span<const std::uint32_t> indices, int rounds);
+/// nor take, and two vessels that only touch share no edge, so nothing leaks between them. Vertices at one
+/// place are one: where texture or normals have a seam, the front has none. positions_mm: one per arrival
+/// time; indices: 3 per triangle; triangles with an index out of range are passed over. rounds <= 0: nothing
+/// happens.
+void smooth_arrival(std::span<float> arrival_s, std::span<const glm::vec3> positions_mm,
+                    std::span<const std::uint32_t> indices, int rounds);
 
 }  // namespace viscera::contrast

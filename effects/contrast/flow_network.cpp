@@ -138,11 +138,11 @@ FlowNetwork solve_flow(const CentrelineGraph& graph, const FlowParams& params,
     const std::vector<Tube> tubes = make_tubes(graph, params.viscosity_pa_s, log);
     const Terminals terminals = find_terminals(graph, tubes, params);
     if (terminals.inlets.empty()) {
-        log.fault("contrast.no_inlet", "centreline has no inlet: nothing flows");
+        log.fault("contrast.no_inlet", graph.name + ": has no inlet: nothing flows");
         return network;
     }
     if (terminals.outlets.empty()) {
-        log.fault("contrast.no_outlet", "centreline has no outlet: nothing flows");
+        log.fault("contrast.no_outlet", graph.name + ": has no outlet: nothing flows");
         return network;
     }
     TubeFlow flow = solve_pressures(graph, tubes, terminals);
@@ -152,7 +152,8 @@ FlowNetwork solve_flow(const CentrelineGraph& graph, const FlowParams& params,
     const std::vector<double> out = outflow(graph, network);
     const std::vector<std::size_t> sources = find_sources(graph, out, terminals.inlets, injection_mm);
     if (sources.empty()) {
-        log.fault("contrast.no_flow", "nothing flows out of the injection: no part is reached");
+        log.fault("contrast.no_flow",
+                  graph.name + ": nothing flows out of the injection: no part is reached");
         return network;
     }
     if (params.injection_speed_mm_s > 0.0) {
@@ -166,7 +167,7 @@ FlowNetwork solve_flow(const CentrelineGraph& graph, const FlowParams& params,
     carry_contrast(graph, sources, network);
     const auto unreached = static_cast<std::uint64_t>(std::ranges::count(network.arrival_s, never));
     if (unreached > 0) {
-        log.fault("contrast.unreached_nodes", "parts of the centreline are reached by no contrast",
+        log.fault("contrast.unreached_nodes", graph.name + ": parts of it are reached by no contrast",
                   unreached);
     }
     return network;

@@ -25,7 +25,7 @@ void hold_given(Terminals& terminals, std::vector<std::size_t>& list, const std:
         if (terminal.node < 0 || static_cast<std::size_t>(terminal.node) >= terminals.pressure_pa.size()) {
             throw Error(ErrorCode::scene, place,
                         "node " + std::to_string(terminal.node) + " does not exist; the centreline has " +
-                            std::to_string(terminals.pressure_pa.size()));
+                            std::to_string(terminals.pressure_pa.size()) + " nodes");
         }
         const auto node = static_cast<std::size_t>(terminal.node);
         if (!std::isfinite(terminal.pressure_mmhg)) {
@@ -44,8 +44,8 @@ Terminals find_terminals(const CentrelineGraph& graph, std::span<const Tube> tub
                          const FlowParams& params) {
     Terminals terminals;
     terminals.pressure_pa.assign(graph.nodes.size(), std::numeric_limits<double>::quiet_NaN());
-    hold_given(terminals, terminals.inlets, params.inlets, "flow/inlets");
-    hold_given(terminals, terminals.outlets, params.outlets, "flow/outlets");
+    hold_given(terminals, terminals.inlets, params.inlets, "/vessel/flow/inlets");
+    hold_given(terminals, terminals.outlets, params.outlets, "/vessel/flow/outlets");
 
     std::vector<int> degree(graph.nodes.size(), 0);
     for (std::size_t e = 0; e < tubes.size(); ++e) {

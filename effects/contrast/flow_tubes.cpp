@@ -58,15 +58,16 @@ std::vector<Tube> make_tubes(const CentrelineGraph& graph, double viscosity_pa_s
     }
     if (broken > 0) {
         log.fault("contrast.graph_edge",
-                  "centreline has edges without two different, finite nodes; they are left out", broken);
+                  graph.name + ": has edges without two different, finite nodes; they are left out", broken);
     }
     if (closed > 0) {
         log.fault("contrast.graph_radius",
-                  "centreline has radii that are not > 0; such edges are closed and conduct nothing", closed);
+                  graph.name + ": has radii that are not > 0; such edges are closed and conduct nothing",
+                  closed);
     }
     if (short_edges > 0) {
-        log.fault("contrast.graph_length", "centreline has edges of no length; taken as 1e-6 of the longest",
-                  short_edges);
+        log.fault("contrast.graph_length",
+                  graph.name + ": has edges of no length; taken as 1e-6 of the longest", short_edges);
     }
     return tubes;
 }

@@ -28,8 +28,9 @@ void find_arrival(Vessel& vessel, const VesselParams& params, Log& log) {
     const CentrelineGraph graph = io::load_centreline(params.centreline.path, log);
     const FlowNetwork network = solve_flow(graph, params.flow, params.injection_mm, log);
     const std::vector<std::optional<TubeFoot>> feet = vertex_feet(graph, positions);
+    report_apart(graph, feet, log);
     vessel.scalar = vertex_arrival(graph, network, feet, log);
-    smooth_arrival(vessel.scalar, vessel.mesh.indices, params.smoothing_rounds);
+    smooth_arrival(vessel.scalar, positions, vessel.mesh.indices, params.smoothing_rounds);
     if (params.full_calibre_mm > 0.0) {
         vessel.weight = vertex_radius(graph, feet);
         for (float& weight : vessel.weight) {
@@ -72,6 +73,20 @@ void find_arrival_range(Vessel& vessel, const VesselParams& params) {
     }
 }
 
+/// The place on the vessel that is nearest is taken, however far away it is.
+void report_injection_apart(const Vessel& vessel, const VesselParams& params, Log& log) {
+    const glm::dvec3 low(vessel.bounds.min);
+    const glm::dvec3 high(vessel.bounds.max);
+    const double distance_mm =
+        glm::distance(*params.injection_mm, glm::clamp(*params.injection_mm, low, high));
+    if (!vessel.bounds.empty() && distance_mm > glm::distance(low, high)) {
+        log.fault("contrast.injection_apart",
+                  params.mesh.file.path.string() + ": injection_mm lies " +
+                      std::to_string(std::lround(std::min(distance_mm, 1e9))) +
+                      " mm away from this vessel; is it in another unit or frame?");
+    }
+}
+
 std::shared_ptr<Vessel> make_vessel(const VesselParams& params, Log& log) {
     auto vessel = std::make_shared<Vessel>();
     vessel->mesh = params.mesh.load_merged(log);
@@ -81,6 +96,9 @@ std::shared_ptr<Vessel> make_vessel(const VesselParams& params, Log& log) {
                   params.mesh.file.path.string() + ": this vessel has no triangles; nothing is drawn of it");
     }
     if (params.density == DensitySource::arrival_time) {
+        if (params.injection_mm) {
+            report_injection_apart(*vessel, params, log);
+        }
         find_arrival(*vessel, params, log);
         find_arrival_range(*vessel, params);
     } else {

@@ -58,6 +58,7 @@ struct CentrelineGraph {
     };
     std::vector<Node> nodes;
     std::vector<Edge> edges;
+    std::string name = "centreline";  ///< for the log: its file
 };
 
 }  // namespace viscera

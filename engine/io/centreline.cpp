@@ -80,6 +80,7 @@ class Builder {
         count("radii that are negative or not finite set to 0", bad_radii_);
         count("edges to nodes that are not there dropped", bad_edges_);
         count("repeated edges and edges from a node to itself dropped", repeated_edges_);
+        graph_.name = file.string();
         if (graph_.edges.empty()) {
             log.fault("centreline: without edges", file.string() + ": no edge is left");
         }

@@ -100,29 +100,57 @@ TEST(VertexArrival, BadInputIsUnreached) {
     EXPECT_TRUE(vertex_arrival(graph, network, {}, log).empty());
 }
 
-TEST(SmoothArrival, KeepsAGradientAndEvensOutAJump) {
-    // A strip of two rows whose times grow along it, with one wild vertex and an unreached end.
+// A strip of two rows whose times grow along it.
+struct Strip {
+    std::vector<glm::vec3> positions;
     std::vector<float> arrival;
     std::vector<std::uint32_t> indices;
+};
+Strip make_strip() {
+    Strip strip;
     for (std::uint32_t i = 0; i < 20; ++i) {
-        arrival.insert(arrival.end(), {static_cast<float>(i), static_cast<float>(i)});
+        const auto at = static_cast<float>(i);
+        strip.positions.insert(strip.positions.end(), {{at, 0.0F, 0.0F}, {at, 1.0F, 0.0F}});
+        strip.arrival.insert(strip.arrival.end(), {at, at});
         if (i > 0) {
             const std::uint32_t v = 2 * i;
-            indices.insert(indices.end(), {v - 2, v, v - 1, v, v + 1, v - 1});
+            strip.indices.insert(strip.indices.end(), {v - 2, v, v - 1, v, v + 1, v - 1});
         }
     }
-    arrival[20] += 8.0F;
-    arrival[38] = arrival[39] = unreached_s;
-    std::vector<float> smooth = arrival;
-    smooth_arrival(smooth, indices, 0);
-    EXPECT_EQ(smooth, arrival);
-    smooth_arrival(smooth, indices, 2);
+    strip.arrival[20] += 8.0F;                            // one wild vertex
+    strip.arrival[38] = strip.arrival[39] = unreached_s;  // and an end that nothing reaches
+    return strip;
+}
+
+TEST(SmoothArrival, KeepsAGradientAndEvensOutAJump) {
+    const Strip strip = make_strip();
+    std::vector<float> smooth = strip.arrival;
+    smooth_arrival(smooth, strip.positions, strip.indices, 0);
+    EXPECT_EQ(smooth, strip.arrival);
+    smooth_arrival(smooth, strip.positions, strip.indices, 2);
     EXPECT_LT(smooth[20], 14.0F);
     EXPECT_NEAR(static_cast<double>(smooth[30]), 15.0, 0.35);
     EXPECT_EQ(smooth[38], unreached_s);
     EXPECT_LE(*std::max_element(smooth.begin(), smooth.begin() + 38), 18.0F);
     const std::vector<std::uint32_t> lying{0, 1, 999};
-    smooth_arrival(smooth, lying, 1);
+    smooth_arrival(smooth, strip.positions, lying, 1);
+}
+
+// Flat-shaded meshes have three vertices of their own for each triangle: the front must not follow its edges.
+TEST(SmoothArrival, TrianglesWithVerticesOfTheirOwnAreAsSmooth) {
+    const Strip strip = make_strip();
+    std::vector<float> whole = strip.arrival;
+    smooth_arrival(whole, strip.positions, strip.indices, 3);
+    Strip apart;
+    for (const std::uint32_t v : strip.indices) {
+        apart.indices.push_back(static_cast<std::uint32_t>(apart.indices.size()));
+        apart.positions.push_back(strip.positions[v]);
+        apart.arrival.push_back(strip.arrival[v]);
+    }
+    smooth_arrival(apart.arrival, apart.positions, apart.indices, 3);
+    for (std::size_t i = 0; i < strip.indices.size(); ++i) {
+        EXPECT_EQ(apart.arrival[i], whole[strip.indices[i]]) << "corner " << i;
+    }
 }
 
 TEST(TubeTree, FindsWhatATryOfEveryEdgeFinds) {

@@ -59,7 +59,7 @@ TEST_F(RealVessels, AortaFillsAlongItsCentreline) {
     EXPECT_EQ(std::ranges::count(arrival, unreached_s), 0);
     // The front stays whole: no triangle spans more than a small part of the filling.
     std::vector<float> smooth = arrival;
-    smooth_arrival(smooth, meshes[0].indices, 3);
+    smooth_arrival(smooth, meshes[0].positions, meshes[0].indices, 3);
     const double last = static_cast<double>(*std::ranges::max_element(arrival));
     const double jump = largest_jump(meshes[0].indices, arrival);
     const double smooth_jump = largest_jump(meshes[0].indices, smooth);

@@ -74,9 +74,10 @@ TEST_F(Degenerate, EmittersOnTheLineOfSightShowTheFront) {
     json scene = chain();
     parameters(scene, 2)["emitters"] = json::array();
     add_emitter(scene, {0, 0, 10}, {0, -5, 10}, {2, -5, 10});
-    (void)render(scene);
+    EXPECT_GT(largest(render(scene).at("contrast.reflux")), 0.3F);
+    parameters(scene, 2)["emitters"] = json::array();
     add_emitter(scene, {0, 0, 10}, {1e-9, -5, 10}, {1e-9, -5, 10});
-    (void)render(scene);
+    EXPECT_EQ(largest(render(scene).at("contrast.reflux")), 0.0F) << "an edge on the tip: no front either";
 }
 
 TEST_F(Degenerate, DensityInTheFileIsMended) {
@@ -210,6 +211,22 @@ TEST_F(DegenerateGraph, NoOutletMeansNoFlowAndSaysSo) {
     EXPECT_EQ(largest(pictures.at("contrast.main")), 0.0F);
     const auto faults = renderer().log().faults();
     EXPECT_TRUE(faults.contains("contrast.no_outlet") || faults.contains("contrast.no_flow")) << said();
+}
+
+/// As where one of them comes in metres, or in RAS and the other in LPS.
+TEST_F(DegenerateGraph, ACentrelineOrAnInjectionFarFromTheMeshIsSaid) {
+    (void)flow({{0, 0, 0, 2}, {0, 0, 10, 2}, {0, 0, 20, 2}}, {{0, 1}, {1, 2}});
+    json near = chain();
+    parameters(near, 0)["vessel"]["injection_mm"] = {0, 0, -15};
+    (void)render(near);
+    EXPECT_TRUE(renderer().log().faults().empty()) << said();
+    (void)flow({{60, 0, 0, 2}, {60, 0, 10, 2}, {60, 0, 20, 2}}, {{0, 1}, {1, 2}});
+    EXPECT_THAT(said(),
+                testing::HasSubstr("line1.json: most of the vessel's vertices are more than three radii"));
+    json far = chain();
+    parameters(far, 0)["vessel"]["injection_mm"] = {0, 0, -60};
+    (void)render(far);
+    EXPECT_THAT(said(), testing::HasSubstr("tube.ply: injection_mm lies 60 mm away"));
 }
 
 TEST_F(DegenerateGraph, OddGraphsStayFinite) {
