@@ -29,7 +29,12 @@ struct SizeRule {
     int width = 0;       ///< [pixels]
     int height = 0;      ///< [pixels]
     int columns = 1;     ///< pictures side by side: the width found by the above, so many times
+    bool operator==(const SizeRule&) const = default;
 };
+
+/// Whether a target may be called so: lower-case letters, digits and '_', in words joined by dots, at most
+/// 128 characters. Files are named after targets, so nothing else may pass.
+[[nodiscard]] bool is_target_name(std::string_view name);
 
 /// What a named target is made of. A name that several passes write has one description.
 struct TargetDesc {

@@ -68,6 +68,29 @@ class Culler {
     std::vector<std::size_t> waiting_;
 };
 
+/// What a pass draws into at once is one framebuffer. Optional writes that nobody needs are not drawn.
+void check_sizes(const Graph& graph, const std::vector<bool>& needed, CompileResult& result) {
+    const Plan& plan = result.plan;
+    for (std::size_t p = 0; p < plan.passes.size(); ++p) {
+        const PlanContent* first = nullptr;
+        for (std::size_t b = 0; b < plan.passes[p].bindings.size(); ++b) {
+            const PlanBinding& binding = plan.passes[p].bindings[b];
+            const GraphPort& port = graph.passes[p].ports[b];
+            if (!binding.content || !makes_content(binding.access) ||
+                (port.optional && !needed[*binding.content])) {
+                continue;
+            }
+            const PlanContent& content = plan.contents[*binding.content];
+            first = first == nullptr ? &content : first;
+            if (content.width != first->width || content.height != first->height) {
+                result.faults.push_back(
+                    {plan.passes[p].name, port.port, port.target,
+                     "differs in size from '" + first->target + "', which the pass draws into as well"});
+            }
+        }
+    }
+}
+
 std::optional<std::string> use_by_output(const Plan& plan, std::size_t pass) {
     for (const PlanOutput& output : plan.outputs) {
         if (plan.contents[output.content].writer == pass) {
@@ -161,8 +184,9 @@ std::string to_string(const Fault& fault) {
 
 CompileResult compile(const Graph& graph, int width, int height, int max_size) {
     CompileResult result = resolve_names(graph, width, height, max_size);
+    const std::vector<bool> needed = Culler(result.plan).run();
+    check_sizes(graph, needed, result);
     if (result.faults.empty()) {
-        const std::vector<bool> needed = Culler(result.plan).run();
         drop_unneeded(result.plan, needed);
         give_reasons(result.plan);
         assign_textures(result.plan, needed);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <set>
-#include <span>
 #include <vector>
 
 #include "engine/core/plan_shapes.h"
@@ -17,8 +16,6 @@ class Resolver {
 
   private:
     void bind_pass(std::size_t pass);
-    void check_sizes();
-    void check_sizes(std::span<const char> wanted);
     void check_ports();
     void check_pair(const GraphPort& first, const GraphPort& second);
     std::optional<std::size_t> bind_read(const GraphPort& port);
@@ -74,7 +71,6 @@ CompileResult Resolver::run() {
         }
     }
     bind_outputs();
-    check_sizes();
     return std::move(result_);
 }
 
@@ -105,52 +101,6 @@ void Resolver::bind_pass(std::size_t index) {
         const GraphPort& port = pass.ports[i];
         if (makes_content(port.access) && made.insert(port.target).second) {
             planned.bindings[i].content = make_content(port);
-        }
-    }
-}
-
-/// What a pass draws into at once is one framebuffer. Optional writes that nobody wants are not drawn.
-void Resolver::check_sizes() {
-    std::vector<char> wanted(plan_.contents.size(), 0);
-    for (const PlanPass& pass : plan_.passes) {
-        for (const PlanBinding& binding : pass.bindings) {
-            if (binding.content && !makes_content(binding.access)) {
-                wanted[*binding.content] = 1;
-            }
-        }
-    }
-    for (const PlanContent& content : plan_.contents) {
-        if (content.modifies) {
-            wanted[*content.modifies] = 1;
-        }
-    }
-    for (const PlanOutput& output : plan_.outputs) {
-        wanted[output.content] = 1;
-    }
-    for (const PlanHistory& history : plan_.history) {
-        if (history.current) {
-            wanted[*history.current] = 1;
-        }
-    }
-    for (pass_ = 0; pass_ < graph_.passes.size(); ++pass_) {
-        check_sizes(wanted);
-    }
-}
-
-void Resolver::check_sizes(std::span<const char> wanted) {
-    const auto& bindings = plan_.passes[pass_].bindings;
-    const PlanContent* first = nullptr;
-    for (std::size_t i = 0; i < bindings.size(); ++i) {
-        const bool drawn = bindings[i].content && makes_content(bindings[i].access) &&
-                           (!graph_.passes[pass_].ports[i].optional || wanted[*bindings[i].content] != 0);
-        if (!drawn) {
-            continue;
-        }
-        const PlanContent& content = plan_.contents[*bindings[i].content];
-        first = first == nullptr ? &content : first;
-        if (content.width != first->width || content.height != first->height) {
-            fault(graph_.passes[pass_].ports[i],
-                  "differs in size from '" + first->target + "', which the pass draws into as well");
         }
     }
 }
@@ -334,18 +284,6 @@ void Resolver::fault(const GraphPort& port, std::string message) {
 }
 
 }  // namespace
-
-bool is_target_name(std::string_view name) {
-    bool in_word = false;
-    for (const char c : name) {
-        const bool word_character = (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
-        if (!word_character && !(c == '.' && in_word)) {
-            return false;
-        }
-        in_word = word_character;
-    }
-    return in_word;
-}
 
 CompileResult resolve_names(const Graph& graph, int width, int height, int max_size) {
     return Resolver(graph, width, height, max_size).run();

@@ -10,7 +10,4 @@ namespace viscera {
 /// and no texture given yet. Plan::history holds every name that is read as `previous`.
 [[nodiscard]] CompileResult resolve_names(const Graph& graph, int width, int height, int max_size);
 
-/// Whether a target may be called so: lower-case letters, digits, '_' and '-' in words joined by dots.
-[[nodiscard]] bool is_target_name(std::string_view name);
-
 }  // namespace viscera

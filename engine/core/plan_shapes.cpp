@@ -2,9 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
-
-#include "engine/core/plan_resolve.h"
 
 namespace viscera {
 namespace {
@@ -31,7 +30,8 @@ std::string apply_size(const SizeRule& rule, int width, int height, TargetShape&
         shape.width = scaled(std::max(width, 1), rule.scale);
         shape.height = scaled(std::max(height, 1), rule.scale);
     }
-    shape.width *= std::max(rule.columns, 1);
+    constexpr std::int64_t largest = std::numeric_limits<int>::max();
+    shape.width = static_cast<int>(std::min(largest, std::int64_t{shape.width} * std::max(rule.columns, 1)));
     return {};
 }
 

@@ -214,6 +214,17 @@ TEST(Compile, OptionalWritesThatNobodyWantsMayHaveAnySize) {
                       "pass draws into as well");
 }
 
+TEST(Compile, ADepthThatServesItsOwnPassAloneHasThePassesSize) {
+    Graph graph = chain();
+    graph.targets.push_back({.name = "depth", .format = PixelFormat::depth32f, .size = {.scale = 0.5}});
+    graph.passes[1].ports.push_back(
+        {.port = "blur.depth", .target = "depth", .access = Access::write, .optional = true});
+    expect_only_fault(
+        graph,
+        "pass 'blur', port 'blur.depth', target 'depth': differs in size from 'blur', which the "
+        "pass draws into as well");
+}
+
 TEST_P(CompileFaults, AreNamedAndAlone) {
     Graph graph = chain();
     ASSERT_TRUE(fault_texts(graph).empty());
@@ -303,6 +314,10 @@ const Broken broken[] = {
     {"target 'base': an absolute size needs width and height of at least 1",
      [](Graph& g) {
          g.targets[0].size = {1.0, 8, -8};
+     }},
+    {"target 'base': size 2147483647x8 is beyond the device's limit of 1000",
+     [](Graph& g) {
+         g.targets[0].size = {1.0, 2'000'000'000, 8, 2};
      }},
     {"target 'base': size 1001x8 is beyond the device's limit of 1000",
      [](Graph& g) {
