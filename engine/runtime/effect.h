@@ -41,6 +41,7 @@ struct Port {
     /// For a write of colour beside a new depth: draw() sets colour only where it sets a depth below 1. Then
     /// what stays uncovered may get its clear value afterwards, which is less than all.
     bool behind_depth = false;
+    bool operator==(const Port&) const = default;
 };
 
 /// What there is to do for an effect in one frame.

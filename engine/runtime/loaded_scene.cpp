@@ -16,14 +16,6 @@ bool same(const ImportedTarget& a, const ImportedTexture& b) {
            a.writable == b.writable;
 }
 
-/// Whether two effects take the same place in a graph.
-bool same_place(const Port& a, const Port& b) {
-    return a.name == b.name && a.access == b.access && a.target == b.target && a.format == b.format &&
-           a.size.scale == b.size.scale && a.size.width == b.size.width && a.size.height == b.size.height &&
-           a.clear == b.clear && a.optional == b.optional && a.passthrough == b.passthrough &&
-           a.overwrites == b.overwrites;
-}
-
 /// Of the frames that a scene is made for: two when it says so itself, or when the host brings something per
 /// eye.
 int eyes_of(const Scene& scene, std::span<const ImportedTarget> imported) {
@@ -95,7 +87,7 @@ bool LoadedScene::replace(Edited& edited, Executor& executor) {
     const std::size_t pass = edited.pass;
     SceneEffects effects = make_effects(edited.scene, registry_);
     if (!planned_ || effects.effects[pass]->uses_view() != effects_.effects[pass]->uses_view() ||
-        !std::ranges::equal(effects.effects[pass]->ports(), effects_.effects[pass]->ports(), same_place)) {
+        effects.effects[pass]->ports() != effects_.effects[pass]->ports()) {
         return false;
     }
     const auto take = [&](SceneEffects& made, SceneEffects& into, int eye) {

@@ -155,6 +155,25 @@ TEST_F(OrganSkip, WhatIsUncoveredMayBeClearedBeforeOrAfter) {
     s.stage().make_current();
 }
 
+TEST_F(OrganSkip, AnOrganThatBecomesAMembraneIsNotClearedAfterwards) {
+    std::vector<Image> shots;
+    for (const bool changes : {false, true}) {
+        Stage stage(Backend::osmesa, {}, ComputeUse::automatic, BackgroundFill::after);
+        s.parameters["blending"] = changes ? "opaque" : "blended";
+        s.parameters["opacity"] = 0.5;
+        stage.load(s.scene());
+        stage.renderer().keep({"organ.color"});
+        stage.render(0.0);
+        if (changes) {
+            stage.renderer().set_parameter("organ", "/blending", "blended");
+            stage.render(0.0);
+        }
+        shots.push_back(stage.renderer().read("organ.color"));
+    }
+    EXPECT_EQ(shots[0].data, shots[1].data);
+    s.stage().make_current();
+}
+
 TEST_F(OrganSkip, OrgansOfOnePictureHideEachOther) {
     // A red one and a green one that stands nearer on the left half, in either order of passes.
     json red = s.parameters;
