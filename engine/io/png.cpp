@@ -2,8 +2,15 @@
 
 #include <png.h>
 
+#include <array>
 #include <cmath>
+#include <csetjmp>
 #include <cstdint>
+#include <cstdio>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "engine/core/error.h"
 #include "engine/io/file_bytes.h"
@@ -59,21 +66,39 @@ std::vector<png_byte> samples_of(const Image& image, const PngOptions& options, 
     return samples;
 }
 
-[[noreturn]] void on_error(png_structp, png_const_charp message) {
-    throw std::runtime_error(message);
+// libpng is C: no exception may pass through it, so errors leave it as it wants them to, by longjmp.
+
+/// What is written, and why it could not be.
+struct Output {
+    std::string bytes;
+    std::array<char, 100> error{};
+};
+
+[[noreturn]] void on_error(png_structp png, png_const_charp message) {
+    auto& error = static_cast<Output*>(png_get_error_ptr(png))->error;
+    std::snprintf(error.data(), error.size(), "%s", message);
+    png_longjmp(png, 1);
 }
 void on_warning(png_structp, png_const_charp) {}
 
 void append(png_structp png, png_bytep bytes, png_size_t count) {
-    static_cast<std::string*>(png_get_io_ptr(png))->append(reinterpret_cast<const char*>(bytes), count);
+    bool done = false;
+    try {
+        static_cast<Output*>(png_get_io_ptr(png))->bytes.append(reinterpret_cast<const char*>(bytes), count);
+        done = true;
+    } catch (const std::exception&) {
+    }
+    if (!done) {
+        png_error(png, "no memory");
+    }
 }
 void flush(png_structp) {}
 
 /// Frees libpng's structures however the scope is left.
 class Writer {
   public:
-    Writer()
-        : png_(png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, on_error, on_warning)),
+    explicit Writer(Output& output)
+        : png_(png_create_write_struct(PNG_LIBPNG_VER_STRING, &output, on_error, on_warning)),
           info_(png_ != nullptr ? png_create_info_struct(png_) : nullptr) {
         if (info_ == nullptr) {
             throw std::runtime_error("libpng cannot start");
@@ -91,23 +116,35 @@ class Writer {
     png_infop info_;
 };
 
+/// False where libpng reports an error. Nothing here needs a destructor, which longjmp would leave out.
+bool write(png_structp png, png_infop info, png_uint_32 width, png_uint_32 height, int bits, int colour_type,
+           std::span<const png_byte> samples) {
+    if (setjmp(png_jmpbuf(png)) != 0) {
+        return false;
+    }
+    png_set_IHDR(png, info, width, height, bits, colour_type, PNG_INTERLACE_NONE,
+                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_write_info(png, info);
+    const std::size_t row_bytes = samples.size() / height;
+    for (std::size_t y = 0; y < height; ++y) {
+        png_write_row(png, samples.data() + y * row_bytes);
+    }
+    png_write_end(png, info);
+    return true;
+}
+
 std::string encode(const Image& image, const PngOptions& options) {
     const Layout layout = layout_of(image, options);
     const std::vector<png_byte> samples = samples_of(image, options, layout.channels);
-    const std::size_t row_bytes = samples.size() / static_cast<std::size_t>(image.height);
-
-    std::string bytes;
-    const Writer writer;
-    png_set_write_fn(writer.png(), &bytes, append, flush);
-    png_set_IHDR(writer.png(), writer.info(), static_cast<png_uint_32>(image.width),
-                 static_cast<png_uint_32>(image.height), options.sixteen_bit ? 16 : 8, layout.colour_type,
-                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-    png_write_info(writer.png(), writer.info());
-    for (std::size_t y = 0; y < static_cast<std::size_t>(image.height); ++y) {
-        png_write_row(writer.png(), samples.data() + y * row_bytes);
+    Output output;
+    const Writer writer(output);
+    png_set_write_fn(writer.png(), &output, append, flush);
+    if (!write(writer.png(), writer.info(), static_cast<png_uint_32>(image.width),
+               static_cast<png_uint_32>(image.height), options.sixteen_bit ? 16 : 8, layout.colour_type,
+               samples)) {
+        throw std::runtime_error(output.error.data());
     }
-    png_write_end(writer.png(), writer.info());
-    return bytes;
+    return std::move(output.bytes);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "engine/io/png.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,11 +9,13 @@
 
 #include "engine/core/error.h"
 #include "engine/io/exr.h"
+#include "tests/core/error_of.h"
 #include "tests/io/temp_folder.h"
 
 namespace viscera::io {
 namespace {
 
+using test::error_of;
 using test::TempFolder;
 
 Image gradient(PixelFormat format) {
@@ -109,6 +112,16 @@ TEST(Png, BadFilesAndFoldersAreFileErrors) {
     EXPECT_EQ(read(folder.write("a.bmp", "BM")), ErrorCode::file);
     EXPECT_EQ(code([&] { write_png(folder / "none/a.png", gradient(PixelFormat::r8)); }), ErrorCode::file);
     EXPECT_EQ(code([&] { write_png(folder / "a.png", Image{}); }), ErrorCode::usage);
+}
+
+TEST(Png, WhatTheLibraryRefusesIsAnErrorWithItsWords) {
+    const TempFolder folder;
+    const Image wide = make_image(1'000'001, 1, PixelFormat::r8);
+    const auto error = error_of([&] { write_png(folder / "wide.png", wide); });
+    ASSERT_TRUE(error);
+    EXPECT_EQ(error->code(), ErrorCode::file);
+    EXPECT_THAT(error->what(), testing::HasSubstr("cannot be encoded: Invalid IHDR data"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "wide.png"));
 }
 
 TEST(ReadImage, ExrGivesItsFirstPicture) {
