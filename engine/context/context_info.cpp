@@ -33,9 +33,12 @@ bool is_software_renderer(std::string_view renderer) {
 }
 
 ContextInfo read_context_info(Backend backend, ProcAddress proc) {
-    const auto gl = gl::Functions::load(proc);
+    return read_context_info(backend, *gl::Functions::load(proc));
+}
+
+ContextInfo read_context_info(Backend backend, const gl::Functions& gl) {
     const auto text = [&](GLenum name) {
-        const auto* value = reinterpret_cast<const char*>(gl->GetString(name));
+        const auto* value = reinterpret_cast<const char*>(gl.GetString(name));
         return std::string(value != nullptr ? value : "");
     };
     ContextInfo info;
@@ -43,8 +46,8 @@ ContextInfo read_context_info(Backend backend, ProcAddress proc) {
     info.vendor = text(GL_VENDOR);
     info.renderer = text(GL_RENDERER);
     info.version = text(GL_VERSION);
-    gl->GetIntegerv(GL_MAJOR_VERSION, &info.major);
-    gl->GetIntegerv(GL_MINOR_VERSION, &info.minor);
+    gl.GetIntegerv(GL_MAJOR_VERSION, &info.major);
+    gl.GetIntegerv(GL_MINOR_VERSION, &info.minor);
     info.software = is_software_renderer(info.renderer);
     if (info.software && backend != Backend::osmesa) {  // OSMesa renders on the CPU on purpose
         info.remark = nvidia_remark();

@@ -8,12 +8,17 @@
 
 namespace viscera {
 
+namespace gl {
+struct Functions;
+}
+
 /// Whether a GL_RENDERER string names a rasteriser on the CPU.
 [[nodiscard]] bool is_software_renderer(std::string_view renderer);
 
 /// What the context current on this thread says of itself. Throws Error(context) where gl::Functions::load
 /// does.
 [[nodiscard]] ContextInfo read_context_info(Backend backend, ProcAddress proc);
+[[nodiscard]] ContextInfo read_context_info(Backend backend, const gl::Functions& gl);
 
 /// Why a machine with an NVIDIA GPU may render in software all the same: its device files are there, but no
 /// vendor file tells EGL of its driver, as in containers without the graphics capability. Empty when that is

@@ -30,8 +30,6 @@ class Buffer {
     void update(std::size_t offset, std::span<const std::byte> content);
 
     void bind(GLenum target) const { gl().BindBuffer(target, id()); }
-    /// As a uniform block. binding < uniform_blocks.
-    void bind_uniform(GLuint binding) const { gl().BindBufferBase(GL_UNIFORM_BUFFER, binding, id()); }
 
   private:
     void allocate(std::size_t bytes, const std::byte* content);

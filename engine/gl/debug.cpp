@@ -3,14 +3,11 @@
 #include <algorithm>
 #include <string>
 
+#include "engine/gl/handle.h"
+
 namespace viscera::gl {
 
 namespace {
-
-bool has_debug(const Functions& gl) {
-    return (gl.KHR_debug != 0 || gl.VERSION_4_3 != 0) && gl.DebugMessageCallback != nullptr &&
-           gl.ObjectLabel != nullptr && gl.PushDebugGroup != nullptr && gl.PopDebugGroup != nullptr;
-}
 
 /// Length of `text` cut to a limit that counts the terminating zero, as the driver's does.
 GLsizei cut_length(const Functions& gl, GLenum limit_name, std::string_view text) {
@@ -51,11 +48,13 @@ void GLAPIENTRY receive(GLenum, GLenum type, GLuint, GLenum, GLsizei length, con
     }
 }
 
-void set_enabled(const Functions& gl, GLenum what, bool enabled) {
-    enabled ? gl.Enable(what) : gl.Disable(what);
-}
-
 }  // namespace
+
+bool has_debug(const Functions& gl) {
+    return (gl.KHR_debug != 0 || gl.VERSION_4_3 != 0) && gl.DebugMessageCallback != nullptr &&
+           gl.ObjectLabel != nullptr && gl.PushDebugGroup != nullptr && gl.PopDebugGroup != nullptr &&
+           gl.GetPointerv != nullptr;
+}
 
 void label_object(const Functions& gl, GLenum kind, GLuint name, std::string_view label) {
     if (has_debug(gl) && name != 0 && !label.empty()) {
@@ -96,8 +95,8 @@ DebugMessages::~DebugMessages() {
         return;
     }
     gl_->DebugMessageCallback(reinterpret_cast<GLDEBUGPROC>(callback_before_), user_before_);
-    set_enabled(*gl_, GL_DEBUG_OUTPUT, output_before_);
-    set_enabled(*gl_, GL_DEBUG_OUTPUT_SYNCHRONOUS, synchronous_before_);
+    toggle(*gl_, GL_DEBUG_OUTPUT, output_before_);
+    toggle(*gl_, GL_DEBUG_OUTPUT_SYNCHRONOUS, synchronous_before_);
 }
 
 }  // namespace viscera::gl

@@ -9,6 +9,8 @@ namespace viscera::gl {
 
 // What debuggers and drivers say and show through KHR_debug. All of it does nothing where a context has none.
 
+[[nodiscard]] bool has_debug(const Functions& gl);
+
 /// Names an object for debuggers and driver messages. `kind`: GL_TEXTURE, GL_FRAMEBUFFER, GL_BUFFER,
 /// GL_PROGRAM, ... The object must have been bound once. Labels longer than the driver takes are cut.
 void label_object(const Functions& gl, GLenum kind, GLuint name, std::string_view label);

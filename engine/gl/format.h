@@ -27,7 +27,5 @@ inline constexpr TextureFormat rgba16_snorm_format{GL_RGBA16_SNORM, GL_RGBA, GL_
 /// Labels, unfiltered.
 inline constexpr TextureFormat r8ui_format{GL_R8UI, GL_RED_INTEGER, GL_UNSIGNED_BYTE, 1};
 inline constexpr TextureFormat r16ui_format{GL_R16UI, GL_RED_INTEGER, GL_UNSIGNED_SHORT, 2};
-inline constexpr TextureFormat depth24_stencil8_format{GL_DEPTH24_STENCIL8, GL_DEPTH_STENCIL,
-                                                       GL_UNSIGNED_INT_24_8, 4};
 
 }  // namespace viscera::gl

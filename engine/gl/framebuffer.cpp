@@ -76,10 +76,7 @@ Framebuffer::Framebuffer(const Functions& gl, std::span<const Texture* const> co
     }
     if (depth != nullptr) {
         take_size(*depth);
-        attach(
-            gl,
-            depth->format().external == GL_DEPTH_STENCIL ? GL_DEPTH_STENCIL_ATTACHMENT : GL_DEPTH_ATTACHMENT,
-            *depth);
+        attach(gl, GL_DEPTH_ATTACHMENT, *depth);
     }
     gl.DrawBuffers(static_cast<GLsizei>(draw_buffers), buffers.data());
     gl.ReadBuffer(read_buffer);

@@ -6,6 +6,8 @@
 namespace viscera::gl {
 namespace {
 
+constexpr GLenum context_lost = 0x0507;  // of OpenGL 4.5, from which robust contexts of any version have it
+
 void set_all(const Functions& gl, std::span<const GLenum> zero, GLenum alignment) {
     for (const GLenum parameter : zero) {
         gl.PixelStorei(parameter, 0);
@@ -14,6 +16,14 @@ void set_all(const Functions& gl, std::span<const GLenum> zero, GLenum alignment
 }
 
 }  // namespace
+
+void toggle(const Functions& gl, GLenum capability, bool on) {
+    if (on) {
+        gl.Enable(capability);
+    } else {
+        gl.Disable(capability);
+    }
+}
 
 void set_tight_packing(const Functions& gl) {
     static constexpr std::array<GLenum, 7> zero{GL_PACK_SWAP_BYTES,   GL_PACK_LSB_FIRST, GL_PACK_ROW_LENGTH,
@@ -52,6 +62,8 @@ const char* error_name(GLenum error) {
             return "invalid framebuffer operation";
         case GL_OUT_OF_MEMORY:
             return "out of memory";
+        case context_lost:
+            return "context lost";
         default:
             return "unknown error";
     }

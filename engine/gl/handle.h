@@ -92,8 +92,11 @@ inline constexpr GLuint editing_unit = texture_units - 1;
 inline constexpr GLuint image_unit = 0;
 /// Draw buffers whose indexed state (colour mask, blending) the engine may touch.
 inline constexpr GLuint draw_buffers = 8;
-/// Indexed uniform buffer bindings that the engine uses.
+/// Indexed uniform buffer bindings that effects may use.
 inline constexpr GLuint uniform_blocks = 8;
+
+/// glEnable or glDisable.
+void toggle(const Functions& gl, GLenum capability, bool on);
 
 /// Unbinds pixel buffers and sets all pack (or unpack) parameters to tightly packed rows with alignment 1.
 void set_tight_packing(const Functions& gl);

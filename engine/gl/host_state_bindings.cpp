@@ -1,3 +1,4 @@
+#include "engine/gl/debug.h"
 #include "engine/gl/host_state_values.h"
 
 namespace viscera::gl {
@@ -13,10 +14,6 @@ GLint read_int(const Functions& gl, GLenum name) {
     GLint value = 0;
     gl.GetIntegerv(name, &value);
     return value;
-}
-
-bool has_debug(const Functions& gl) {
-    return gl.KHR_debug != 0 && gl.GetPointerv != nullptr;
 }
 
 // ---- framebuffers
@@ -145,10 +142,6 @@ void poison_units(const Functions& gl, const Objects& objects) {
 
 // ---- images
 
-bool has_images(const Functions& gl) {
-    return gl.VERSION_4_3 != 0;
-}
-
 constexpr std::array<GLenum, 6> image_fields{GL_IMAGE_BINDING_NAME,    GL_IMAGE_BINDING_LEVEL,
                                              GL_IMAGE_BINDING_LAYERED, GL_IMAGE_BINDING_LAYER,
                                              GL_IMAGE_BINDING_ACCESS,  GL_IMAGE_BINDING_FORMAT};
@@ -241,8 +234,8 @@ void restore_debug(const Functions& gl, Saved in) {
         gl.PopDebugGroup();
     }
     gl.DebugMessageCallback(reinterpret_cast<GLDEBUGPROC>(in[3]), reinterpret_cast<const void*>(in[4]));
-    (in[1] != 0 ? gl.Enable : gl.Disable)(GL_DEBUG_OUTPUT);
-    (in[2] != 0 ? gl.Enable : gl.Disable)(GL_DEBUG_OUTPUT_SYNCHRONOUS);
+    toggle(gl, GL_DEBUG_OUTPUT, in[1] != 0);
+    toggle(gl, GL_DEBUG_OUTPUT_SYNCHRONOUS, in[2] != 0);
 }
 
 void GLAD_API_PTR ignore_message(GLenum /*source*/, GLenum /*type*/, GLuint /*id*/, GLenum /*severity*/,
@@ -250,9 +243,8 @@ void GLAD_API_PTR ignore_message(GLenum /*source*/, GLenum /*type*/, GLuint /*id
 
 void poison_debug(const Functions& gl, const Objects& objects) {
     gl.DebugMessageCallback(ignore_message, &objects);
-    (gl.IsEnabled(GL_DEBUG_OUTPUT) == GL_FALSE ? gl.Enable : gl.Disable)(GL_DEBUG_OUTPUT);
-    (gl.IsEnabled(GL_DEBUG_OUTPUT_SYNCHRONOUS) == GL_FALSE ? gl.Enable
-                                                           : gl.Disable)(GL_DEBUG_OUTPUT_SYNCHRONOUS);
+    toggle(gl, GL_DEBUG_OUTPUT, gl.IsEnabled(GL_DEBUG_OUTPUT) == GL_FALSE);
+    toggle(gl, GL_DEBUG_OUTPUT_SYNCHRONOUS, gl.IsEnabled(GL_DEBUG_OUTPUT_SYNCHRONOUS) == GL_FALSE);
     gl.PushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 1, -1, "poison");
 }
 
@@ -306,7 +298,7 @@ constexpr std::array rows{
     buffer_row<GL_UNIFORM_BUFFER, GL_UNIFORM_BUFFER_BINDING>("uniform buffer"),
     HostStateRow{"texture units", slots_per_unit* texture_units, false, always, save_units, restore_units,
                  poison_units},
-    HostStateRow{"image unit", image_fields.size(), false, has_images, save_image, restore_image,
+    HostStateRow{"image unit", image_fields.size(), false, has_4_3, save_image, restore_image,
                  [](const Functions& gl, const Objects& objects) {
                      gl.BindImageTexture(image_unit, objects.textures[2], 0, GL_TRUE, 0, GL_READ_WRITE,
                                          GL_R32F);

@@ -51,14 +51,6 @@ inline void read_floats(const Functions& gl, GLenum name, Values out) {
                    [](GLfloat value) { return static_cast<GLint64>(std::bit_cast<GLint>(value)); });
 }
 
-inline void toggle(const Functions& gl, GLenum capability, bool on) {
-    if (on) {
-        gl.Enable(capability);
-    } else {
-        gl.Disable(capability);
-    }
-}
-
 inline bool always(const Functions& /*gl*/) {
     return true;
 }

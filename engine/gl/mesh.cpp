@@ -12,23 +12,9 @@ namespace {
 // attribute values.
 constexpr GLuint constant_divisor = 0x7FFFFFFF;
 
-struct Constant {
-    Attribute attribute;
-    std::array<float, 4> value;
-};
-constexpr std::array<Constant, 5> constants{{{Attribute::normal, {0.0F, 0.0F, 0.0F, 0.0F}},
-                                             {Attribute::uv, {0.0F, 0.0F, 0.0F, 0.0F}},
-                                             {Attribute::scalar, {0.0F, 0.0F, 0.0F, 0.0F}},
-                                             {Attribute::colour, {1.0F, 1.0F, 1.0F, 1.0F}},
-                                             {Attribute::picture_uv, {0.0F, 0.0F, 0.0F, 0.0F}}}};
-
-constexpr std::array<float, 4 * constants.size()> constant_values = [] {
-    std::array<float, 4 * constants.size()> values{};
-    for (std::size_t i = 0; i < constants.size(); ++i) {
-        std::ranges::copy(constants[i].value, values.begin() + static_cast<std::ptrdiff_t>(4 * i));
-    }
-    return values;
-}();
+constexpr std::array optional_attributes{Attribute::normal, Attribute::uv, Attribute::scalar,
+                                         Attribute::picture_uv};
+constexpr std::array<float, 4> zero{};
 
 constexpr GLuint location(Attribute attribute) {
     return static_cast<GLuint>(attribute);
@@ -38,11 +24,11 @@ constexpr GLuint location(Attribute attribute) {
 
 Mesh::Mesh(const Functions& gl, const MeshData& data)
     : vertex_array_(gl),
-      constants_(gl, std::as_bytes(std::span(constant_values)), BufferUsage::fixed),
+      zero_(gl, std::as_bytes(std::span(zero)), BufferUsage::fixed),
       indices_(gl, std::size_t{0}, BufferUsage::dynamic),
       vertex_count_(data.positions.size()) {
-    for (const Constant& constant : constants) {
-        set_constant(constant.attribute);
+    for (const Attribute attribute : optional_attributes) {
+        set_zero(attribute);
     }
     update_positions(data.positions);
     if (!data.normals.empty()) {
@@ -62,7 +48,7 @@ Mesh::Mesh(const Functions& gl, const MeshData& data)
 }
 
 std::size_t Mesh::bytes() const {
-    std::size_t sum = constants_.bytes() + indices_.bytes();
+    std::size_t sum = zero_.bytes() + indices_.bytes();
     for (const Stream& stream : streams_) {
         sum += stream.buffer.bytes();
     }
@@ -88,7 +74,7 @@ void Mesh::update(Attribute attribute, GLint components, std::size_t count,
         found->buffer.upload(content);
         return;
     }
-    streams_.push_back({attribute, Buffer(constants_.gl(), content, BufferUsage::dynamic)});
+    streams_.push_back({attribute, Buffer(zero_.gl(), content, BufferUsage::dynamic)});
     vertex_array_.set_attribute(streams_.back().buffer,
                                 {.location = location(attribute), .components = components});
 }
@@ -105,9 +91,6 @@ void Mesh::update_uvs(std::span<const glm::vec2> uvs) {
 void Mesh::update_picture_uvs(std::span<const glm::vec2> uvs) {
     update(Attribute::picture_uv, 2, uvs.size(), std::as_bytes(uvs), "texture coordinates");
 }
-void Mesh::update_colours(std::span<const glm::vec4> colours) {
-    update(Attribute::colour, 4, colours.size(), std::as_bytes(colours), "colours");
-}
 
 void Mesh::update_scalars(std::string_view name, std::span<const float> values) {
     check_count(values.size(), "scalars");
@@ -116,8 +99,7 @@ void Mesh::update_scalars(std::string_view name, std::span<const float> values) 
         found->buffer.upload(std::as_bytes(values));
         return;
     }
-    scalars_.push_back(
-        {std::string(name), Buffer(constants_.gl(), std::as_bytes(values), BufferUsage::stream)});
+    scalars_.push_back({std::string(name), Buffer(zero_.gl(), std::as_bytes(values), BufferUsage::stream)});
 }
 
 void Mesh::update_indices(std::span<const std::uint32_t> indices) {
@@ -135,27 +117,19 @@ void Mesh::update_indices(std::span<const std::uint32_t> indices) {
     index_count_ = indices.size();
 }
 
-bool Mesh::has_scalar(std::string_view name) const {
-    return std::ranges::find(scalars_, name, &Scalar::name) != scalars_.end();
-}
-
 bool Mesh::select_scalar(std::string_view name) {
     const auto found = std::ranges::find(scalars_, name, &Scalar::name);
     if (found == scalars_.end()) {
-        set_constant(Attribute::scalar);
+        set_zero(Attribute::scalar);
         return false;
     }
     vertex_array_.set_attribute(found->buffer, {.location = location(Attribute::scalar), .components = 1});
     return true;
 }
 
-void Mesh::set_constant(Attribute attribute) {
-    const auto found = std::ranges::find(constants, attribute, &Constant::attribute);
-    const auto index = static_cast<std::size_t>(found - constants.begin());
-    vertex_array_.set_attribute(constants_, {.location = location(attribute),
-                                             .components = 4,
-                                             .offset = index * sizeof(Constant::value),
-                                             .divisor = constant_divisor});
+void Mesh::set_zero(Attribute attribute) {
+    vertex_array_.set_attribute(
+        zero_, {.location = location(attribute), .components = 4, .divisor = constant_divisor});
 }
 
 void Mesh::draw_range(std::size_t first, std::size_t count) const {
@@ -165,8 +139,8 @@ void Mesh::draw_range(std::size_t first, std::size_t count) const {
         return;
     }
     vertex_array_.bind();
-    constants_.gl().DrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * length), GL_UNSIGNED_INT,
-                                 reinterpret_cast<const void*>(3 * begin * sizeof(std::uint32_t)));
+    zero_.gl().DrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * length), GL_UNSIGNED_INT,
+                            reinterpret_cast<const void*>(3 * begin * sizeof(std::uint32_t)));
 }
 
 }  // namespace viscera::gl

@@ -13,17 +13,15 @@ namespace viscera::gl {
 
 /// Where vertex shaders find their inputs; Program binds the names "a_position" ... to these. picture_uv:
 /// where the mesh's pictures lie, when uv is an atlas made for it.
-enum class Attribute : GLuint { position = 0, normal = 1, uv = 2, scalar = 3, colour = 4, picture_uv = 5 };
+enum class Attribute : GLuint { position = 0, normal = 1, uv = 2, scalar = 3, picture_uv = 4 };
 
 /// A triangle mesh in GPU memory, each attribute in a buffer of its own so that it can be replaced alone.
-/// Attributes that the mesh lacks read as constants (normal 0, uvs 0, scalar 0, colour 1), not as the
-/// context's current values, which may be a host's.
+/// Attributes that the mesh lacks read as 0, not as the context's current values, which may be a host's.
 class Mesh {
   public:
     /// The first scalar of `data`, if any, is the one that shaders see.
     Mesh(const Functions& gl, const MeshData& data);
 
-    [[nodiscard]] std::size_t vertex_count() const { return vertex_count_; }
     [[nodiscard]] std::size_t triangle_count() const { return index_count_ / 3; }
     /// Of all buffers.
     [[nodiscard]] std::size_t bytes() const;
@@ -34,7 +32,6 @@ class Mesh {
     void update_normals(std::span<const glm::vec3> normals);
     void update_uvs(std::span<const glm::vec2> uvs);
     void update_picture_uvs(std::span<const glm::vec2> uvs);
-    void update_colours(std::span<const glm::vec4> colours);
     /// Replaces or adds the scalar `name`.
     void update_scalars(std::string_view name, std::span<const float> values);
     /// New triangles, of any number, in the order in which they are to be drawn. Throws Error(usage) when an
@@ -43,7 +40,6 @@ class Mesh {
 
     /// Makes `name` what shaders see as a_scalar. False, and 0 for every vertex, when the mesh has none.
     bool select_scalar(std::string_view name);
-    [[nodiscard]] bool has_scalar(std::string_view name) const;
 
     void draw() const { draw_range(0, triangle_count()); }
     /// Triangles [first, first + count), clipped to what there is.
@@ -61,10 +57,10 @@ class Mesh {
     void update(Attribute attribute, GLint components, std::size_t count, std::span<const std::byte> content,
                 std::string_view what);
     void check_count(std::size_t count, std::string_view what) const;
-    void set_constant(Attribute attribute);
+    void set_zero(Attribute attribute);
 
     VertexArray vertex_array_;
-    Buffer constants_;
+    Buffer zero_;
     Buffer indices_;
     std::vector<Stream> streams_;
     std::vector<Scalar> scalars_;

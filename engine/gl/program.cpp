@@ -18,24 +18,22 @@ struct AttributeName {
     Attribute attribute;
     const char* name;
 };
-constexpr std::array<AttributeName, 6> attribute_names{{{Attribute::position, "a_position"},
+constexpr std::array<AttributeName, 5> attribute_names{{{Attribute::position, "a_position"},
                                                         {Attribute::normal, "a_normal"},
                                                         {Attribute::uv, "a_uv"},
                                                         {Attribute::scalar, "a_scalar"},
-                                                        {Attribute::colour, "a_color"},
                                                         {Attribute::picture_uv, "a_picture_uv"}}};
 
 // Of the textures that a Texture can be; any other sampler could never be bound.
-constexpr std::array<GLenum, 10> sampler_types{GL_SAMPLER_2D,
-                                               GL_SAMPLER_BUFFER,
-                                               GL_SAMPLER_3D,
-                                               GL_SAMPLER_2D_ARRAY,
-                                               GL_SAMPLER_2D_SHADOW,
-                                               GL_INT_SAMPLER_2D,
-                                               GL_INT_SAMPLER_3D,
-                                               GL_UNSIGNED_INT_SAMPLER_2D,
-                                               GL_UNSIGNED_INT_SAMPLER_3D,
-                                               GL_UNSIGNED_INT_SAMPLER_2D_ARRAY};
+constexpr std::array<GLenum, 9> sampler_types{GL_SAMPLER_2D,
+                                              GL_SAMPLER_BUFFER,
+                                              GL_SAMPLER_3D,
+                                              GL_SAMPLER_2D_ARRAY,
+                                              GL_INT_SAMPLER_2D,
+                                              GL_INT_SAMPLER_3D,
+                                              GL_UNSIGNED_INT_SAMPLER_2D,
+                                              GL_UNSIGNED_INT_SAMPLER_3D,
+                                              GL_UNSIGNED_INT_SAMPLER_2D_ARRAY};
 
 bool is_sampler(GLenum type) {
     return std::ranges::find(sampler_types, type) != sampler_types.end();
@@ -315,31 +313,6 @@ void Program::bind(std::string_view name, const Texture& texture, const Sampler&
     }
     texture.bind(uniform->unit);
     sampler.bind(uniform->unit);
-}
-
-void Program::unbind_textures() const {
-    const Functions& gl = handle_.gl();
-    for (const Uniform& uniform : uniforms_) {
-        if (!is_sampler(uniform.type)) {
-            continue;
-        }
-        for (GLuint unit = uniform.unit; unit < uniform.unit + static_cast<GLuint>(uniform.size); ++unit) {
-            gl.ActiveTexture(GL_TEXTURE0 + unit);
-            gl.BindTexture(GL_TEXTURE_2D, 0);
-            gl.BindTexture(GL_TEXTURE_3D, 0);
-            gl.BindTexture(GL_TEXTURE_2D_ARRAY, 0);
-            gl.BindTexture(GL_TEXTURE_BUFFER, 0);
-            gl.BindSampler(unit, 0);
-        }
-    }
-}
-
-void Program::connect_block(std::string_view name, GLuint binding) const {
-    const Functions& gl = handle_.gl();
-    const GLuint block = gl.GetUniformBlockIndex(id(), std::string(name).c_str());
-    if (block != GL_INVALID_INDEX) {
-        gl.UniformBlockBinding(id(), block, binding);
-    }
 }
 
 }  // namespace viscera::gl

@@ -13,13 +13,12 @@
 
 namespace viscera::gl {
 
-/// A linked shader program. Vertex inputs named a_position, a_normal, a_uv, a_scalar, a_color and
+/// A linked shader program. Vertex inputs named a_position, a_normal, a_uv, a_scalar and
 /// a_picture_uv have the locations that Mesh fills; each sampler has a texture unit of its own, given at link
 /// time.
 ///
 /// The setters act on the program in use: call use() first. Nothing is allocated. A name that no shader uses
-/// is ignored, because compilers drop unused uniforms; has_uniform() tells, and a type that does not fit is
-/// an Error(gl).
+/// is ignored, because compilers drop unused uniforms; a type that does not fit is an Error(gl).
 class Program {
   public:
     /// Throws Error(gl) with the driver's log, in which lines of the expanded text have become "file:line";
@@ -49,7 +48,6 @@ class Program {
     };
     /// Active uniforms outside blocks, sorted by name.
     [[nodiscard]] std::span<const Uniform> uniforms() const { return uniforms_; }
-    [[nodiscard]] bool has_uniform(std::string_view name) const { return find(name) != nullptr; }
 
     void set(std::string_view name, bool value) const { set(name, static_cast<int>(value)); }
     void set(std::string_view name, int value) const { set(name, std::span(&value, 1)); }
@@ -80,11 +78,6 @@ class Program {
 
     /// Binds texture and sampler to the unit of the sampler uniform `name`; ignored where no shader uses it.
     void bind(std::string_view name, const Texture& texture, const Sampler& sampler) const;
-    /// Takes away whatever is bound to this program's units, so that an input that a pass leaves out reads as
-    /// black and never as what an earlier pass left there.
-    void unbind_textures() const;
-    /// Connects a uniform block to an indexed binding < uniform_blocks; ignored where no shader uses it.
-    void connect_block(std::string_view name, GLuint binding) const;
 
   private:
     Program(const Functions& gl, std::string_view label);

@@ -1,17 +1,11 @@
 #include "engine/gl/raster_state.h"
 
+#include "engine/gl/handle.h"
+
 namespace viscera::gl {
 namespace {
 
 constexpr GLuint clip_distances = 8;
-
-void toggle(const Functions& gl, GLenum capability, bool on) {
-    if (on) {
-        gl.Enable(capability);
-    } else {
-        gl.Disable(capability);
-    }
-}
 
 void apply_fixed(const Functions& gl) {
     static constexpr std::array<GLenum, 10> off{

@@ -68,9 +68,6 @@ inline constexpr RasterState max_blend_state{.blend = Blend{.equation_rgb = GL_M
                                                             .destination_alpha = GL_ONE}};
 inline constexpr RasterState add_blend_state{
     .blend = Blend{.destination_rgb = GL_ONE, .destination_alpha = GL_ONE}};
-/// Premultiplied colour over what is there.
-inline constexpr RasterState over_blend_state{
-    .blend = Blend{.destination_rgb = GL_ONE_MINUS_SRC_ALPHA, .destination_alpha = GL_ONE_MINUS_SRC_ALPHA}};
 /// Nearest surface wins. Also for clears of colour and depth.
 inline constexpr RasterState depth_tested_state{.depth_test = GL_LESS, .depth_write = true};
 

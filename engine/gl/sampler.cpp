@@ -32,9 +32,6 @@ Sampler::Sampler(const Functions& gl, const SamplerDesc& desc) : handle_(make_sa
         gl.SamplerParameteri(id(), direction, to_gl(desc.wrap));
     }
     gl.SamplerParameterfv(id(), GL_TEXTURE_BORDER_COLOR, desc.border.data());
-    gl.SamplerParameteri(id(), GL_TEXTURE_COMPARE_MODE,
-                         desc.depth_compare ? GL_COMPARE_REF_TO_TEXTURE : GL_NONE);
-    gl.SamplerParameteri(id(), GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
 }
 
 }  // namespace viscera::gl

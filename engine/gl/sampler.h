@@ -14,7 +14,6 @@ struct SamplerDesc {
     Filter filter = Filter::linear;
     Wrap wrap = Wrap::clamp;  ///< in all directions
     std::array<float, 4> border{0.0F, 0.0F, 0.0F, 0.0F};
-    bool depth_compare = false;  ///< for sampler2DShadow: passes where reference <= texel
 
     bool operator==(const SamplerDesc&) const = default;
 };

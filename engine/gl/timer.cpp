@@ -17,7 +17,7 @@ GLuint64 result(const Functions& gl, const QueryHandle& query) {
 
 }  // namespace
 
-GpuTimer::GpuTimer(const Functions& gl, bool software) : gl_(&gl), reliable_(!software) {
+GpuTimer::GpuTimer(const Functions& gl) : gl_(&gl) {
     for (Slot& slot : slots_) {
         slot = {make_query(gl), make_query(gl)};
     }

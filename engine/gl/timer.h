@@ -10,25 +10,20 @@
 namespace viscera::gl {
 
 /// GPU time between begin() and end(), known some frames later, without ever waiting. It uses timestamps, so
-/// that it may be nested and never collides with a GL_TIME_ELAPSED query of the host's.
-///
-/// Software renderers report times of no meaning: reliable() is then false.
+/// that it may be nested and never collides with a GL_TIME_ELAPSED query of the host's. Software renderers
+/// report times of no meaning (Capabilities::gpu_timers()).
 class GpuTimer {
   public:
-    /// `software`: whether the context renders on the CPU.
-    GpuTimer(const Functions& gl, bool software);
+    explicit GpuTimer(const Functions& gl);
 
     /// Measures nothing when all results of the ring are still outstanding.
     void begin();
     void end();
     /// The newest measurement that has come back [ms]; none before the first.
     [[nodiscard]] std::optional<double> latest_ms();
-    [[nodiscard]] std::size_t outstanding() const { return count_; }
-    [[nodiscard]] bool reliable() const { return reliable_; }
-
-    static constexpr std::size_t ring_size = 8;
 
   private:
+    static constexpr std::size_t ring_size = 8;
     struct Slot {
         QueryHandle begin;
         QueryHandle end;
@@ -38,7 +33,6 @@ class GpuTimer {
     std::size_t first_ = 0;  ///< oldest outstanding
     std::size_t count_ = 0;
     bool running_ = false;
-    bool reliable_ = true;
     std::optional<double> latest_ms_;
 };
 

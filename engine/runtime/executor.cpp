@@ -55,7 +55,7 @@ void Executor::set_plan(Plan plan, std::vector<ImportedTarget> imported, std::sp
         }
         find_programs(state);
         if (options_.timers && capabilities_.gpu_timers()) {
-            state.timer = std::make_unique<gl::GpuTimer>(shared_.gl, capabilities_.software);
+            state.timer = std::make_unique<gl::GpuTimer>(shared_.gl);
         }
         passes_.push_back(std::move(state));
     }

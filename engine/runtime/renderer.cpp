@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "engine/context/context_info.h"
 #include "engine/core/error.h"
 #include "engine/gl/capabilities.h"
 #include "engine/gl/debug.h"
@@ -26,26 +27,16 @@ gl::Texture make_black(const gl::Functions& gl) {
     return black;
 }
 
-ContextInfo describe(const gl::Capabilities& capabilities) {
-    ContextInfo info;
-    info.vendor = capabilities.vendor;
-    info.renderer = capabilities.renderer;
-    info.version = capabilities.version;
-    info.major = capabilities.major;
-    info.minor = capabilities.minor;
-    info.software = capabilities.software;
-    return info;
-}
-
 /// HARDWARE: a branch that no pixel of a group takes costs nothing. Software renderers run both sides of
 /// each.
 std::vector<std::string> shader_defines(const gl::Capabilities& capabilities) {
     return capabilities.software ? std::vector<std::string>{} : std::vector<std::string>{"HARDWARE"};
 }
 
-bool uses_compute(ComputeUse wanted, const gl::Capabilities& capabilities, Log& log) {
+bool uses_compute(ComputeUse wanted, const gl::Capabilities& capabilities, const ContextInfo& info,
+                  Log& log) {
     if (wanted == ComputeUse::on && !capabilities.compute) {
-        log.info("compute shaders are wanted but need OpenGL 4.3, the context is " + capabilities.version +
+        log.info("compute shaders are wanted but need OpenGL 4.3, the context is " + info.version +
                  "; fragment shaders are used");
     }
     return capabilities.compute &&
@@ -62,7 +53,7 @@ class Renderer::Impl {
         : log_(options.log),
           gl_(gl::Functions::load(proc)),
           capabilities_(gl::Capabilities::query(*gl_)),
-          info_(describe(capabilities_)),
+          info_(read_context_info(Backend::current, *gl_)),
           host_state_(*gl_),
           entry_(host_state_, log_),
           assets_(log_, std::move(options.progress), std::move(options.cache_folder)),
@@ -71,8 +62,9 @@ class Renderer::Impl {
           samplers_(*gl_),
           black_(make_black(*gl_)),
           no_vertices_(*gl_),
-          shared_{*gl_,         shaders_, samplers_, black_,
-                  no_vertices_, assets_,  log_,      uses_compute(options.compute, capabilities_, log_)},
+          shared_{
+              *gl_,         shaders_, samplers_, black_,
+              no_vertices_, assets_,  log_,      uses_compute(options.compute, capabilities_, info_, log_)},
           scene_(registry, capabilities_.max_texture_2d),
           executor_(
               shared_, capabilities_,

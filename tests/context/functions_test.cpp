@@ -86,8 +86,7 @@ TEST_F(WithContext, Above33AreNullWhereTheVersionDoesNotHaveThem) {
     EXPECT_NE(gl->GenSamplers, nullptr);
     const auto capabilities = gl::Capabilities::query(*gl);
     EXPECT_FALSE(capabilities.compute);
-    EXPECT_FALSE(capabilities.buffer_storage);
-    EXPECT_FALSE(capabilities.debug_messages);
+    EXPECT_FALSE(gl::has_debug(*gl));
 }
 
 TEST_F(WithContext, WithoutKhrDebugItsHelpersDoNothing) {
@@ -101,44 +100,13 @@ TEST_F(WithContext, WithoutKhrDebugItsHelpersDoNothing) {
     EXPECT_EQ(gl->GetError(), GLenum{GL_NO_ERROR});
 }
 
-TEST(Capabilities, CompareVersions) {
-    gl::Capabilities c;
-    c.major = 4;
-    c.minor = 1;
-    EXPECT_TRUE(c.at_least(3, 3));
-    EXPECT_TRUE(c.at_least(4, 1));
-    EXPECT_FALSE(c.at_least(4, 2));
-}
-
 TEST_F(WithContext, CapabilitiesReachTheLimitsThatCore33Promises) {
     const auto gl = gl::Functions::load(real_);
     const auto c = gl::Capabilities::query(*gl);
-    EXPECT_EQ(c.renderer, context_->info().renderer);
     EXPECT_EQ(c.software, context_->info().software);
     EXPECT_GE(c.max_texture_2d, 1024);
-    EXPECT_GE(c.max_texture_3d, 256);
-    EXPECT_GE(c.max_array_layers, 256);
-    EXPECT_GE(c.max_buffer_texels, 65536);
-    EXPECT_GE(c.max_viewport_width, c.max_texture_2d);
-    EXPECT_GE(c.max_viewport_height, c.max_texture_2d);
-    EXPECT_GE(c.max_draw_buffers, 8);
-    EXPECT_GE(c.max_colour_attachments, 8);
-    EXPECT_GE(c.max_fragment_units, 16);
-    EXPECT_GE(c.max_vertex_units, 16);
-    EXPECT_GE(c.max_uniform_buffer_bytes, 16384);
-    EXPECT_GE(c.max_uniform_bindings, 36);
-    EXPECT_GT(c.uniform_offset_bytes, 0);
-    EXPECT_GE(c.max_vertex_attributes, 16);
-    EXPECT_GE(c.max_samples, 4);
     EXPECT_EQ(c.gpu_timers(), c.timer_bits > 0 && !c.software);
     EXPECT_EQ(gl->GetError(), GLenum{GL_NO_ERROR});
-}
-
-TEST_F(WithContext, ExtensionsAreComparedWhole) {
-    const auto gl = gl::Functions::load(real_);
-    EXPECT_TRUE(gl::has_extension(*gl, "GL_KHR_debug"));
-    EXPECT_FALSE(gl::has_extension(*gl, "GL_KHR_debu"));
-    EXPECT_FALSE(gl::has_extension(*gl, ""));
 }
 
 }  // namespace

@@ -39,12 +39,6 @@ TEST_P(FramebufferTest, AGapDiscardsItsOutput) {
     EXPECT_EQ(read_texture(gl(), b).at(0, 0, 1), 1.0F);
 }
 
-TEST_P(FramebufferTest, TakesDepthWithStencil) {
-    const gl::Texture both =
-        gl::Texture::make_2d(gl(), 2, 2, gl::depth24_stencil8_format, "depth and stencil");
-    EXPECT_NO_THROW(gl::Framebuffer(gl(), {}, &both, "depth and stencil"));
-}
-
 TEST_P(FramebufferTest, SaysWhyItIsIncomplete) {
     const auto empty = error_of([&] { const gl::Framebuffer none(gl(), {}, nullptr, "contrast.main"); });
     ASSERT_TRUE(empty);

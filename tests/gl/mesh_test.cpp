@@ -26,7 +26,7 @@ MeshData two_squares() {
 
 class MeshTest : public GlTest {
   protected:
-    /// Left and right pixel of a target of 2 x 1: normal.x, uv.y, scalar, colour.g.
+    /// Left and right pixel of a target of 2 x 1: normal.x, uv.y, scalar, 1.
     [[nodiscard]] std::array<glm::vec4, 2> draw(const gl::Mesh& mesh, std::size_t first = 0,
                                                 std::size_t count = 1000) {
         canvas_.begin(gl(), gl::overwrite_state);
@@ -47,10 +47,10 @@ class MeshTest : public GlTest {
     gl::Program program_{
         gl(),
         shader("#version 330 core\n"
-               "in vec3 a_normal; in vec4 a_color; in float a_scalar; in vec2 a_uv; in vec3 a_position;\n"
+               "in vec3 a_normal; in float a_scalar; in vec2 a_uv; in vec3 a_position;\n"
                "out vec4 value;\n"
                "void main() { gl_Position = vec4(a_position, 1.0);\n"
-               "    value = vec4(a_normal.x, a_uv.y, a_scalar, a_color.g); }\n"),
+               "    value = vec4(a_normal.x, a_uv.y, a_scalar, 1.0); }\n"),
         shader("#version 330 core\nin vec4 value; out vec4 colour;\nvoid main() { colour = value; }\n"),
         "mesh"};
 };
@@ -87,8 +87,6 @@ TEST_P(MeshTest, EachAttributeArrivesAndIsReplacedAlone) {
     EXPECT_EQ(draw(mesh)[0], glm::vec4(0.75F, 1.0F, 4.0F, 1.0F));
     EXPECT_EQ(draw(mesh)[1], glm::vec4(0.75F, 1.0F, 5.0F, 1.0F));
 
-    mesh.update_colours(std::vector<glm::vec4>(8, glm::vec4(0, 0.5F, 0, 0)));
-    EXPECT_EQ(draw(mesh)[1].w, 0.5F);
     EXPECT_TRUE(mesh.select_scalar("arrival"));
     EXPECT_EQ(draw(mesh)[0].z, 3.0F);
     EXPECT_FALSE(mesh.select_scalar("pressure"));
@@ -139,7 +137,7 @@ TEST_P(MeshTest, AnEmptyMeshDrawsNothing) {
     gl::Mesh mesh(gl(), MeshData{});
     EXPECT_EQ(draw(mesh)[0], nothing);
     mesh.update_indices({});
-    EXPECT_FALSE(mesh.has_scalar(""));
+    EXPECT_FALSE(mesh.select_scalar(""));
 }
 
 TEST_P(MeshTest, WrongCountsAndIndicesAreRefused) {

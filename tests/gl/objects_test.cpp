@@ -97,19 +97,16 @@ INSTANTIATE_TEST_SUITE_P(Backends, SamplerTest, each_backend(), backend_name);
 using TimerTest = GlTest;
 
 TEST_P(TimerTest, ResultsComeLaterAndNeverWait) {
-    gl::GpuTimer timer(gl(), context_info().software);
-    EXPECT_EQ(timer.reliable(), !context_info().software);
+    gl::GpuTimer timer(gl());
     EXPECT_FALSE(timer.latest_ms());
     for (int i = 0; i < 20; ++i) {  // more than the ring holds
         timer.begin();
         timer.end();
     }
-    EXPECT_LE(timer.outstanding(), gl::GpuTimer::ring_size);
     gl().Finish();
     const std::optional<double> time_ms = timer.latest_ms();
     ASSERT_TRUE(time_ms);
     EXPECT_GE(*time_ms, 0.0);
-    EXPECT_EQ(timer.outstanding(), 0U);
     EXPECT_EQ(timer.latest_ms(), time_ms);
 }
 
@@ -117,7 +114,7 @@ TEST_P(TimerTest, NestsInAQueryOfTheHosts) {
     GLuint query = 0;
     gl().GenQueries(1, &query);
     gl().BeginQuery(GL_TIME_ELAPSED, query);
-    gl::GpuTimer timer(gl(), true);
+    gl::GpuTimer timer(gl());
     timer.begin();
     timer.end();
     gl().EndQuery(GL_TIME_ELAPSED);

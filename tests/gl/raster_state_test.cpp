@@ -51,7 +51,6 @@ TEST_P(RasterStateTest, PresetsDoWhatTheirNamesSay) {
     EXPECT_EQ(result(gl::overwrite_state, layers_), 0.5F);
     EXPECT_EQ(result(gl::max_blend_state, layers_), 0.75F);
     EXPECT_EQ(result(gl::add_blend_state, layers_), 1.5F);
-    EXPECT_EQ(result(gl::over_blend_state, layers_), 0.5F + 0.5F * (0.75F + 0.25F * 0.25F));
     EXPECT_EQ(result(gl::depth_tested_state, layers_), 0.75F);
 }
 

@@ -26,7 +26,7 @@ TEST_P(WarmTest, AFrameAllocatesNothing) {
     const gl::Texture map = gl::Texture::make_2d(gl(), 4, 4, PixelFormat::r16f, "map");
     const gl::Sampler sampler(gl(), {});
     const Canvas canvas(gl(), 8, 8);
-    gl::GpuTimer timer(gl(), true);
+    gl::GpuTimer timer(gl());
     gl::HostState host(gl());
     const auto frame = [&](float time_s) {
         const gl::HostStateScope scope(host, log());

@@ -114,7 +114,7 @@ class Drawing {
         no_vertices_.bind();
         Samples samples;
         for (int i = -2; i < lab_.options().repeats; ++i) {  // the first ones compile
-            gl::GpuTimer timer(gl, !lab_.hardware());
+            gl::GpuTimer timer(gl);
             gl.Finish();
             const gl::CpuTimer wall;
             const double work = processor_ms();

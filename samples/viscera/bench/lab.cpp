@@ -80,7 +80,7 @@ Stage::Stage(Lab& lab, Scene scene, Options options) : lab_(lab), options_(std::
     }
     renderer_ = std::make_unique<Renderer>(lab.proc(), lab.registry(), std::move(made));
     renderer_->set_scene(std::move(scene));
-    whole_timer_ = std::make_unique<gl::GpuTimer>(lab.gl(), lab.capabilities().software);
+    whole_timer_ = std::make_unique<gl::GpuTimer>(lab.gl());
 }
 
 Sample Stage::now() const {
@@ -107,8 +107,7 @@ void Stage::observe(std::string_view pass, bool begins) {
     if (gpu_clock()) {
         auto found = timers_.find(pass);
         if (found == timers_.end()) {
-            found =
-                timers_.emplace(std::string(pass), std::make_unique<gl::GpuTimer>(lab_.gl(), false)).first;
+            found = timers_.emplace(std::string(pass), std::make_unique<gl::GpuTimer>(lab_.gl())).first;
         }
         begins ? found->second->begin() : found->second->end();
     } else {
