@@ -226,10 +226,11 @@ void find_along(const glm::ivec3& dims, const Rows& rows, const std::uint8_t* ki
             });
         }
         for (int way = 1; way <= distance_reach / 2 + 1; way *= 2) {
+            const int next = step * way;
             for (int y = 0; y < dims.y; ++y) {
                 std::uint8_t* row = rows.row(along, y, z);
                 rows.each_before(step, [&](int x) {
-                    const Bricks ahead = load(row + x + step * way) & Bricks(distance_reach);
+                    const Bricks ahead = load(row + x + next) & Bricks(distance_reach);
                     const Bricks here = load(row + x);
                     const Bricks kind = kinds_of(here);
                     store(kind | max(here ^ kind, larger(ahead, way)), row + x);

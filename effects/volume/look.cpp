@@ -31,7 +31,9 @@ void expect_fitting(const Source& source, const VolumeGrid& shown, const char* w
 
 void LookParams::visit(ParamVisitor& v) {
     v.field({.name = "shading", .doc = "Lights and shadow (composite)."}, shading);
-    v.field({.name = "labels", .doc = "Segments with looks of their own (composite)."}, labels);
+    v.field({.name = "labels",
+             .doc = "Segments with looks of their own; what is hidden is hidden from every ray function."},
+            labels);
     v.field({.name = "overlay", .doc = "A second volume that gives the hue (composite)."}, overlay);
     v.field({.name = "clip_planes", .doc = "At most 8 planes that cut the volume; they stay in the world."},
             clip_planes);
@@ -61,18 +63,16 @@ std::vector<Look::Variant> Look::variants(const LookParams& params, const Transf
 }
 
 std::vector<std::string> Look::defines(const LookParams& params, const Variant& variant) {
-    std::vector<std::string> names;
+    std::vector<std::string> names = defines_of_segments(params);
     if (variant.shaded) {
-        names = params.shading.defines();
+        const std::vector<std::string> shading = params.shading.defines();
+        names.insert(names.end(), shading.begin(), shading.end());
     }
     if (variant.by_gradient) {
         names.emplace_back("GRADIENT_OPACITY");
     }
-    if (params.labels.used()) {
-        names.emplace_back("LABELS");
-        if (params.labels.has_ramps()) {
-            names.emplace_back("LABEL_RAMPS");
-        }
+    if (params.labels.used() && params.labels.has_ramps()) {
+        names.emplace_back("LABEL_RAMPS");
     }
     if (params.overlay.used()) {
         names.emplace_back("OVERLAY");
@@ -83,7 +83,12 @@ std::vector<std::string> Look::defines(const LookParams& params, const Variant& 
     return names;
 }
 
-std::string_view Look::load(const LookParams& params, const VolumeGrid& shown, Prepare& prepare) {
+std::vector<std::string> Look::defines_of_segments(const LookParams& params) {
+    return params.labels.used() ? std::vector<std::string>{"LABELS"} : std::vector<std::string>{};
+}
+
+std::string_view Look::load(const LookParams& params, const VolumeGrid& shown, bool composed,
+                            Prepare& prepare) {
     if (parameters_key_ != prepare.parameters_key()) {
         parameters_key_ = prepare.parameters_key();
         label_source_ = source_of(params.labels.file, params.labels.host, params.labels.geometry);
@@ -98,7 +103,7 @@ std::string_view Look::load(const LookParams& params, const VolumeGrid& shown, P
         }
         expect_fitting(*labels_, shown, "/labels");
     }
-    if (params.overlay.used()) {
+    if (composed && params.overlay.used()) {
         overlay_ = load_source(prepare.assets(), overlay_source_, prepare.frame());
         if (!overlay_) {
             return "the host gives no overlay of this name";

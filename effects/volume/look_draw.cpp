@@ -73,8 +73,11 @@ Storage storage_of(const LookScene& scene) {
 
 }  // namespace
 
-void Look::bind_labels(const LookParams& params, const LookScene& scene, const Pass& pass,
-                       const gl::Program& program) {
+void Look::bind_segments(const LookParams& params, const LookScene& scene, const Pass& pass,
+                         const gl::Program& program) {
+    if (!params.labels.used()) {
+        return;
+    }
     const Volume& labels = labels_->volume();
     const glm::ivec3 n = labels.grid.dims;
     Hash ids;
@@ -102,21 +105,6 @@ void Look::bind_labels(const LookParams& params, const LookScene& scene, const P
         label_looks_.texture = table<glm::vec4>(pass.gl(), looks, 2, PixelFormat::rgba32f, "looks of labels");
         label_looks_.key = parameters_key_;
     }
-    const std::uint64_t ramps_key =
-        Hash().add(parameters_key_).add(scene.source.state_key()).add(key_of(scene.function)).value();
-    if (params.labels.has_ramps() && label_ramps_.key != ramps_key) {
-        std::vector<TransferFunction> rows = ramps(params.labels, scene.function);
-        rows.insert(rows.begin(), scene.function);
-        std::vector<glm::vec4> texels;
-        for (const TransferFunction& row : rows) {
-            const ClassificationTable entries = tabulate(
-                extinction_knots(row, scene.value_of_texel, scene.range), scene.range, scene.entries);
-            texels.insert(texels.end(), entries.entries.begin(), entries.entries.end());
-        }
-        label_ramps_.texture = table<glm::vec4>(pass.gl(), texels, static_cast<int>(rows.size()),
-                                                PixelFormat::rgba32f, "ramps of labels");
-        label_ramps_.key = ramps_key;
-    }
     // Labels follow the volume's placement: both lie in one unplaced world.
     const Placed place = placed_in(labels, scene.space);
     glm::dmat4 to_voxels(1.0);
@@ -133,9 +121,26 @@ void Look::bind_labels(const LookParams& params, const LookScene& scene, const P
     }
     pass.bind(program, "u_labels", *label_voxels_->texture, gl::Filter::nearest);
     pass.bind(program, "u_label_looks", *label_looks_.texture, gl::Filter::nearest);
-    if (params.labels.has_ramps()) {
-        pass.bind(program, "u_label_ramps", *label_ramps_.texture, gl::Filter::nearest);
+}
+
+void Look::bind_ramps(const LookParams& params, const LookScene& scene, const Pass& pass,
+                      const gl::Program& program) {
+    const std::uint64_t ramps_key =
+        Hash().add(parameters_key_).add(scene.source.state_key()).add(key_of(scene.function)).value();
+    if (label_ramps_.key != ramps_key) {
+        std::vector<TransferFunction> rows = ramps(params.labels, scene.function);
+        rows.insert(rows.begin(), scene.function);
+        std::vector<glm::vec4> texels;
+        for (const TransferFunction& row : rows) {
+            const ClassificationTable entries = tabulate(
+                extinction_knots(row, scene.value_of_texel, scene.range), scene.range, scene.entries);
+            texels.insert(texels.end(), entries.entries.begin(), entries.entries.end());
+        }
+        label_ramps_.texture = table<glm::vec4>(pass.gl(), texels, static_cast<int>(rows.size()),
+                                                PixelFormat::rgba32f, "ramps of labels");
+        label_ramps_.key = ramps_key;
     }
+    pass.bind(program, "u_label_ramps", *label_ramps_.texture, gl::Filter::nearest);
 }
 
 void Look::bind_overlay(const LookParams& params, const LookScene& scene, const Pass& pass,
@@ -268,8 +273,9 @@ void Look::bind(const LookParams& params, const Variant& variant, const LookScen
     if (variant.by_gradient) {
         bind_gradient(scene, pass, program);
     }
-    if (params.labels.used()) {
-        bind_labels(params, scene, pass, program);
+    bind_segments(params, scene, pass, program);
+    if (params.labels.used() && params.labels.has_ramps()) {
+        bind_ramps(params, scene, pass, program);
     }
     if (params.overlay.used()) {
         bind_overlay(params, scene, pass, program);

@@ -134,7 +134,7 @@ void RayCastEffect::draw(const Pass& pass) {
     if (gradients_ && !variant_.atlas) {
         bind_gradients(pass, program, map);
     }
-    if (!projects()) {
+    if (!projects() || params_.look.labels.used()) {
         LookScene scene{*source_,
                         params_.volume.channel,
                         function_,
@@ -148,7 +148,11 @@ void RayCastEffect::draw(const Pass& pass) {
             scene.colours = &voxels_->volume();
             scene.accumulate = &params_.accumulate;
         }
-        look_.bind(params_.look, variant_.look, scene, pass, program);
+        if (projects()) {
+            look_.bind_segments(params_.look, scene, pass, program);
+        } else {
+            look_.bind(params_.look, variant_.look, scene, pass, program);
+        }
     }
     if (variant_.skipping != Skipping::none) {
         const VoxelBox& occupied = skip_map_.occupied_box();

@@ -180,16 +180,15 @@ Work RayCastEffect::prepare(Prepare& prepare) {
         prepare.log().fault("volume.singular", "the volume's placement is singular; it is not drawn");
         return Work::idle("the volume's placement is singular");
     }
-    if (projects()) {
-        if (params_.look.labels.used() || params_.look.overlay.used()) {
-            prepare.log().fault("volume.look",
-                                "labels and overlay take no part in what '" +
-                                    std::string(choice_names(
-                                        variant_.function)[static_cast<std::size_t>(variant_.function)]) +
-                                    "' shows: hidden segments are seen");
-        }
-    } else if (const std::string_view missing = look_.load(params_.look, volume.grid, prepare);
-               !missing.empty()) {
+    if (projects() && params_.look.overlay.used()) {
+        prepare.log().fault(
+            "volume.look",
+            "an overlay takes no part in what '" +
+                std::string(choice_names(variant_.function)[static_cast<std::size_t>(variant_.function)]) +
+                "' shows");
+    }
+    if (const std::string_view missing = look_.load(params_.look, volume.grid, !projects(), prepare);
+        !missing.empty()) {
         return Work::idle(missing);
     }
     if (space_.shape.curvilinear() && glm::any(glm::greaterThanEqual(box_min_, box_max_))) {

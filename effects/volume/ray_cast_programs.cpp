@@ -70,6 +70,8 @@ std::span<const ProgramDesc> RayCastEffect::programs() const {
             const std::vector<std::string> clip = clip_defines(params_.look.clip_planes);
             program.defines.insert(program.defines.end(), clip.begin(), clip.end());
             if (function != RayFunction::composite) {
+                const std::vector<std::string> segments = Look::defines_of_segments(params_.look);
+                program.defines.insert(program.defines.end(), segments.begin(), segments.end());
                 programs_.push_back(std::move(program));
                 variants_.push_back({VolumeKind::cartesian, function, skipping});
                 continue;

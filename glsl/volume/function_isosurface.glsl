@@ -9,13 +9,12 @@ uniform float u_transmittance_limit;
 struct State {
     vec3 colour;
     float transmittance;
-    float s;     // of the first crossing [mm]
     float last;  // value at the end of the slab before
     float end;   // where that was [mm]
 };
 
 State begin() {
-    return State(vec3(0.0), 1.0, 3e38, 0.0, -3e38);
+    return State(vec3(0.0), 1.0, 0.0, -3e38);
 }
 
 // The first root of cubic = value behind `from`, in (from, 1]; 2 where there is none.
@@ -158,10 +157,13 @@ bool take_slab(inout State state, Slab slab) {
 #endif
             vec3 local = slab.centre + (exact - 0.5) * slab.extent;
             vec4 surface_colour = u_iso_colour[surface];
+#ifdef LABELS
+            vec4 in_segment = labelled(vec4(surface_colour.rgb, 1.0), label_at(local));
+            surface_colour = vec4(in_segment.rgb, in_segment.a > 0.0 ? surface_colour.a : 0.0);
+#endif
             vec3 lit = lit_by_eye(surface_colour.rgb, local, slab.extent / slab.length_mm);
             state.colour += state.transmittance * surface_colour.a * lit;
             state.transmittance *= 1.0 - surface_colour.a;
-            state.s = min(state.s, begin_s + exact * slab.length_mm);
 #ifndef COORDINATES
             from = root + 1e-5;
 #endif

@@ -19,36 +19,68 @@ State begin() {
 #endif
 }
 
+// Share of a place's attenuation that is seen; what is hidden counts in no projection.
+float seen_at(vec3 local) {
+#ifdef LABELS
+    return segment_factor(local);
+#else
+    return 1.0;
+#endif
+}
+
 #if PROJECTION < 2
-// Largest (or least) value in the slab that counts.
-float extreme(Slab slab) {
 #if PROJECTION == 0
 #define FURTHER max
 #else
 #define FURTHER min
 #endif
+
+// A value as far as an extreme minds it.
+float candidate(float value, vec3 local) {
+#ifdef LABELS
+    return seen_at(local) > 0.0 ? value : begin().value;
+#else
+    return value;
+#endif
+}
+
+float candidate_at(vec3 local) {
+    return candidate(sample_volume(to_sample(local)), local);
+}
+
+// Largest (or least) value in the slab that counts.
+float extreme(Slab slab) {
 #if SCHEME == CELL
     vec4 cubic = cell_cubic(slab);
     vec2 turns = cubic_turns(cubic);
-    return FURTHER(FURTHER(cubic.x, cubic.w), FURTHER(cubic_value(cubic, turns.x), cubic_value(cubic, turns.y)));
+    vec3 first = slab.centre - 0.5 * slab.extent;
+    return FURTHER(FURTHER(candidate(cubic.x, first), candidate(cubic.w, first + slab.extent)),
+                   FURTHER(candidate(cubic_value(cubic, turns.x), first + turns.x * slab.extent),
+                           candidate(cubic_value(cubic, turns.y), first + turns.y * slab.extent)));
 #elif SCHEME == GAUSS
-    return FURTHER(sample_volume(to_sample(slab.centre - 0.25 * slab.extent)),
-                   sample_volume(to_sample(slab.centre + 0.25 * slab.extent)));
+    return FURTHER(candidate_at(slab.centre - 0.25 * slab.extent), candidate_at(slab.centre + 0.25 * slab.extent));
 #else
-    return sample_volume(to_sample(slab.centre));
+    return candidate_at(slab.centre);
 #endif
 }
 #endif
 
-void add(inout State state, float value, float length_mm) {
-#if PROJECTION == 3
-    state.value += max(value * u_attenuation.x + u_attenuation.y, 0.0) * length_mm;
-#else
+// Of a value that is there.
+bool is_counted(float value) {
 #ifdef THRESHOLD
-    bool counts = value >= u_threshold;
+    return value >= u_threshold;
 #else
-    const bool counts = true;
+    return true;
 #endif
+}
+
+void add(inout State state, vec3 local, float length_mm) {
+    float value = sample_volume(to_sample(local));
+    float seen = seen_at(local);
+#if PROJECTION == 3
+    state.value += seen * max(value * u_attenuation.x + u_attenuation.y, 0.0) * length_mm;
+#else
+    bool counts = seen > 0.0 && is_counted(value);
     state.value += counts ? value * length_mm : 0.0;
     state.length_mm += counts ? length_mm : 0.0;
 #endif
@@ -57,19 +89,19 @@ void add(inout State state, float value, float length_mm) {
 bool take_slab(inout State state, Slab slab) {
 #if PROJECTION < 2
     float value = extreme(slab);
-#ifdef THRESHOLD
-    bool counts = value >= u_threshold;
+#ifdef LABELS
+    bool counts = value != begin().value && is_counted(value);
 #else
-    const bool counts = true;
+    bool counts = is_counted(value);
 #endif
     state.value = counts ? FURTHER(state.value, value) : state.value;
     state.length_mm += counts ? slab.length_mm : 0.0;
 #elif SCHEME == MIDPOINT
-    add(state, sample_volume(to_sample(slab.centre)), slab.length_mm);
+    add(state, slab.centre, slab.length_mm);
 #else
     // Two Gauss points are exact for cubics, and along a ray a trilinear cell is one (spec: accuracy F15).
-    add(state, sample_volume(to_sample(slab.centre - gauss_point * slab.extent)), 0.5 * slab.length_mm);
-    add(state, sample_volume(to_sample(slab.centre + gauss_point * slab.extent)), 0.5 * slab.length_mm);
+    add(state, slab.centre - gauss_point * slab.extent, 0.5 * slab.length_mm);
+    add(state, slab.centre + gauss_point * slab.extent, 0.5 * slab.length_mm);
 #endif
     return false;
 }

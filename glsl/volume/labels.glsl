@@ -44,8 +44,11 @@ int label_at(vec3 local) {
     ivec3 size = label_voxels();
 #ifdef COORDINATES
     voxel.ANGLE = u_labels_curved ? on_ring(voxel.ANGLE, size.ANGLE) : voxel.ANGLE;
+    place.ANGLE = u_labels_curved ? float(voxel.ANGLE) : place.ANGLE;
 #endif
-    bool inside = all(greaterThanEqual(voxel, ivec3(0))) && all(lessThan(voxel, size));
+    // Rays begin and end on faces, and rounding decides on which side.
+    const float rounding = 1e-3;
+    bool inside = all(greaterThan(place, vec3(-rounding))) && all(lessThan(place, vec3(size) + rounding));
     int found = label_of(clamp(voxel, ivec3(0), size - 1));
     return inside ? found : 0;
 }
@@ -55,6 +58,11 @@ vec4 labelled(vec4 c, int label) {
     vec4 look = texelFetch(u_label_looks, ivec2(label, 0), 0);
     vec4 how = texelFetch(u_label_looks, ivec2(label, 1), 0);
     return vec4(mix(c.rgb, look.rgb, look.a), c.a * how.x);
+}
+
+// Factor on the extinction of what is at a place; 0: hidden.
+float segment_factor(vec3 local) {
+    return texelFetch(u_label_looks, ivec2(label_at(local), 1), 0).x;
 }
 
 // Row of the segment's transfer function.

@@ -293,17 +293,20 @@ TEST_F(VolumeLooks, LabelsOfNoneBesideAndBroken) {
     expect_refused(scene(parameters, front()), ErrorCode::scene, "/labels/segments/1/id");
 }
 
-TEST_F(VolumeLooks, SegmentsWithoutLabelsAndLabelsThatAreNotHeededAreSaid) {
+TEST_F(VolumeLooks, SegmentsWithoutLabelsAndOverlaysThatAreNotHeededAreSaid) {
     const LiveVolume volume(block());
     json parameters = homogeneous();
     parameters["labels"]["segments"] = {{{"id", 3}, {"visible", false}}};
     give("host", &volume);
     expect_refused(scene(parameters, front()), ErrorCode::scene, "/labels");
     parameters["function"] = "mip";
-    parameters["labels"]["host"] = "labels";  // which nobody gives: it is not looked for
+    parameters["labels"]["host"] = "labels";  // which nobody gives
+    EXPECT_TRUE(is_empty(cast(volume, parameters)));
+    parameters.erase("labels");
+    parameters["overlay"]["host"] = "overlay";  // it is not looked for
     json plain = homogeneous();
     plain["function"] = "mip";
-    expect_same(cast(volume, parameters), cast(volume, plain), "labels take no part");
+    expect_same(cast(volume, parameters), cast(volume, plain), "an overlay takes no part");
     expect_said_once("volume.look", "'mip' shows");
 }
 

@@ -9,6 +9,7 @@
 
 #include "effects/volume/limits_effect.h"
 #include "effects/volume/sector_mesh.h"
+#include "engine/runtime/embedded_shaders.h"
 #include "tests/reference/volume_sector.h"
 #include "tests/volume/mixed_scene.h"
 #include "tests/volume/sector_stage.h"
@@ -380,11 +381,11 @@ TEST(SectorSlices, ShowWhatLiesOnThePlane) {
 TEST(SectorSurfaces, LieWhereTheFieldSaysSo) {
     // A ball beside the axis in a ring and in a sphere, from smooth data: where rays meet it, within a
     // thousandth of a voxel of the interpolated field, and in order.
-    constexpr std::array<std::string_view, 1> functions{"finish"};
-    VolumeStage stage(
-        {{"volume/function_isosurface.glsl", wrapped("volume/function_isosurface.glsl", functions,
-                                                     "vec4 finish(State state) { return vec4(state.s, "
-                                                     "state.s < 1e30 ? 1.0 : 0.0, 0.0, 1.0); }\n")}});
+    const std::string file = "volume/function_isosurface.glsl";
+    constexpr std::string_view lit = "vec3 lit = ";
+    std::string text = embedded_shader(file).value();
+    text.replace(text.find(lit), lit.size(), "vec3 lit = local; ");
+    VolumeStage stage(ShaderTexts{{file, text}});
     for (const char* name : {"ring", "ball", "gap", "shell"}) {
         SCOPED_TRACE(name);
         VolumeShape shape;
@@ -405,8 +406,6 @@ TEST(SectorSurfaces, LieWhereTheFieldSaysSo) {
                                {"sampling", {{"filter", "linear_fp32"}}}};
         const Shot shot = stage.cast(volume, p, look, glm::ivec2(40));
         const volume::Space space = volume::make_space(grid, PlacementParams{});
-        const glm::dvec3 middle = space.local_to_world * glm::dvec4(0.5 * (space.low + space.high), 1.0);
-        const double plane = glm::dot(middle - look.eye_mm, shot.view.forward);
         double worst = 0.0;
         int hits = 0;
         int missed = 0;
@@ -437,15 +436,15 @@ TEST(SectorSurfaces, LieWhereTheFieldSaysSo) {
                         first = 0.5 * (a + b);
                     }
                 }
-                const bool hit = shot.at(x, y).y > 0.5;
+                const bool hit = shot.at(x, y).w > 0.5;
                 if (hit != (first >= 0.0)) {
                     missed += least > 0.02 || hit ? 1 : 0;  // grazing by a hundredth of a voxel
                     continue;
                 }
                 if (hit) {
                     ++hits;
-                    // The shader counts from a plane through the middle of the box around the volume.
-                    const double s = shot.along(ray, plane) + shot.at(x, y).x;
+                    const glm::dvec3 met = space.local_to_world * glm::dvec4(glm::dvec3(shot.at(x, y)), 1.0);
+                    const double s = glm::dot(met - ray.at(0.0), ray.at(1.0) - ray.at(0.0));
                     worst = std::max(worst, std::abs(s - first));
                 }
             }
