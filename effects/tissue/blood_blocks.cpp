@@ -11,11 +11,11 @@ namespace viscera::tissue {
 namespace {
 
 constexpr int tile_side = 32;  // a multiple of a block's
-// A drop moves two texels in a step at most, and a block around those that it lies in is planned.
+// A drop moves two texels in a step at most, and the film that it leaves one: blood_mark.vert.
 constexpr int steps_per_plan = 4;
-// Until then a drop goes eight texels. Where a gutter of five leads is known texel by texel; this is the
-// rest.
-constexpr int past_gutter = 4;
+constexpr int points_per_drop = 3;  // as blood_mark.vert, for blocks
+// How far across a seam blood goes until then, beyond where it lies or gutters lead.
+constexpr int past_seam = 4;
 constexpr float steps_per_look = 8.0F;  // at most
 // A film that creeps more slowly stands [mm/s].
 constexpr float still_mm_s = 5e-4F;
@@ -29,6 +29,11 @@ constexpr gl::RasterState mark_state = [] {
 constexpr gl::RasterState first_mark_state = [] {
     gl::RasterState state = mark_state;
     state.colour_mask = {true, false, false, false};
+    return state;
+}();
+constexpr gl::RasterState drop_mark_state = [] {
+    gl::RasterState state = mark_state;
+    state.colour_mask = {false, false, false, true};
     return state;
 }();
 
@@ -79,16 +84,21 @@ BloodBlocks::BloodBlocks(const gl::Functions& gl, int size)
 
 void BloodBlocks::pair(Pairs& pairs, std::span<const SeamLink> links, std::span<const SeamJump> jumps,
                        int side, int beyond) const {
-    // The last number of a pair: only what goes far comes there.
+    // The last number of a pair: how much a block must be in reach of blood, as blood_mark.vert.
+    enum Least { stepped, holding, far };
     std::vector<std::array<int, 5>> found;
-    const auto add = [&](int from, int to, int x, int y, bool far) {
-        const glm::ivec2 at = glm::clamp(glm::ivec2(to % size_ + x, to / size_ + y), 0, size_ - 1) / side;
-        found.push_back({from % size_ / side, from / size_ / side, at.x, at.y, far ? 1 : 0});
+    const auto square = [&](int texel, int dx, int dy) {
+        return glm::clamp(glm::ivec2(texel % size_ + dx, texel / size_ + dy), 0, size_ - 1) / side;
+    };
+    const auto add = [&](const glm::ivec2& from, const glm::ivec2& to, Least least) {
+        found.push_back({from.x, from.y, to.x, to.y, least});
     };
     const auto flow = [&](int from, int to) {
-        add(from, to, 0, 0, false);
+        add(square(from, 0, 0), square(to, 0, 0), holding);
         for (int i = 0; beyond > 0 && i < 9; ++i) {
-            add(from, to, (i % 3 - 1) * beyond, (i / 3 - 1) * beyond, true);
+            const glm::ivec2 way = glm::ivec2(i % 3 - 1, i / 3 - 1) * beyond;
+            add(square(from, way.x, way.y), square(to, 0, 0), far);
+            add(square(from, 0, 0), square(to, way.x, way.y), far);
         }
     };
     for (const SeamLink& link : links) {
@@ -99,7 +109,7 @@ void BloodBlocks::pair(Pairs& pairs, std::span<const SeamLink> links, std::span<
     // A drop leaves blood where the gutter below it leads, and the gutter shows what is there.
     for (const SeamJump& jump : jumps) {
         flow(jump.gutter, jump.to);
-        add(jump.to, jump.gutter, 0, 0, false);
+        add(square(jump.to, 0, 0), square(jump.gutter, 0, 0), stepped);
     }
     std::ranges::sort(found);
     const auto same = [](const std::array<int, 5>& a, const std::array<int, 5>& b) {
@@ -109,7 +119,7 @@ void BloodBlocks::pair(Pairs& pairs, std::span<const SeamLink> links, std::span<
     std::vector<glm::vec4> texels;
     std::ranges::transform(found, std::back_inserter(texels), [](const std::array<int, 5>& pair) {
         return glm::vec4(pair[0], pair[1], pair[2], pair[3]) +
-               glm::vec4(0.0F, 0.0F, 0.0F, pair[4] != 0 ? 0.5F : 0.0F);
+               glm::vec4(0.0F, 0.0F, 0.0F, 0.25F * static_cast<float>(pair[4]));
     });
     pairs.count = static_cast<int>(found.size());
     pairs.list.upload(*gl_, texels, "squares that seams join");
@@ -118,7 +128,7 @@ void BloodBlocks::pair(Pairs& pairs, std::span<const SeamLink> links, std::span<
 void BloodBlocks::lie_on(const Image& position, std::span<const SeamLink> links,
                          std::span<const SeamJump> jumps) {
     pair(tile_pairs_, links, jumps, tile_side, 0);
-    pair(block_pairs_, links, jumps, block_side, past_gutter);
+    pair(block_pairs_, links, jumps, block_side, past_seam);
     const auto count = static_cast<std::size_t>(blocks_);
     std::vector<unsigned char> surface(count * count, 0);
     std::vector<unsigned char> cells(count * count, 0);
@@ -149,7 +159,7 @@ void BloodBlocks::begin(const Pass& pass, bool everywhere) {
     for (std::size_t i = 0; i < 2; ++i) {
         clear(pass, marks_target_[i], value);
         draw_into(pass, held_target_[i], gl::overwrite_state);
-        held_target_[i].clear_colour(0, {value, 0.0F, 0.0F, 0.0F});
+        held_target_[i].clear_colour(0, {value, value, 0.0F, 0.0F});
         clear(pass, plan_target_[i], value);
     }
     clear(pass, reach_target_, value);
@@ -173,14 +183,18 @@ void BloodBlocks::mark(const Pass& pass, const BloodMedium& medium, const gl::Te
     const gl::Program& program = use(pass, BloodShader::mark_of_drops);
     bind(pass, program, "u_drops", drops);
     pass.bind(program, "u_metric", "metric");
+    pass.bind(program, "u_gravity", "gravity");
     program.set("u_drop", medium.drop);
+    program.set("u_flow", medium.flow);
+    program.set("u_strength", medium.strength);
+    program.set("u_steps", static_cast<float>(steps_per_plan));
     program.set("u_first", first);
     program.set("u_tile_count", glm::ivec2(blockwise ? blocks_ : tiles_));
     program.set("u_film_size", glm::vec2(static_cast<float>(size_)));
     program.set("u_blockwise", blockwise);
     draw_into(pass, blockwise ? held_target_[now_] : marks_target_[now_],
-              blockwise ? first_mark_state : mark_state);
-    pass.draw_generated(GL_POINTS, count, 1);
+              blockwise ? drop_mark_state : mark_state);
+    pass.draw_generated(GL_POINTS, blockwise ? points_per_drop * count : count, 1);
 }
 
 void BloodBlocks::mark_alive(const Pass& pass, const BloodMedium& medium, const Blood& blood,
@@ -247,6 +261,10 @@ void BloodBlocks::look(const Pass& pass, const BloodMedium& medium, const Blood&
     bind(pass, search, "u_film_before", blood.film_before);
     search.set("u_still", still_mm_s * medium.flow.z);
     search.set("u_rest", medium.flow.y);
+    // Of two heights h side by side one flows if h - residual > pinning - 4 h; see exchange() in
+    // blood_common.glsl.
+    search.set("u_stirs", std::max(medium.flow.y, 0.2F * (medium.flow.y + medium.pinning)));
+    search.set("u_pinning", medium.pinning);
     search.set("u_all", all);
     // A relief pulls no more than gravity down a wall.
     const float steepest = medium.relief_pull > 0.0F ? 2.0F : 1.0F;

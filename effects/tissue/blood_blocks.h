@@ -50,6 +50,9 @@ class BloodBlocks {
 
     /// The surface is another.
     void lie_on(const Image& position, std::span<const SeamLink> links, std::span<const SeamJump> jumps);
+    /// Blocks with a surface: x, y each; those with cells first.
+    [[nodiscard]] const gl::Texture& list() const { return list_.texture(); }
+    [[nodiscard]] int count() const { return listed_; }
     /// Nothing is known yet; `everywhere`: blood may be anywhere.
     void begin(const Pass& pass, bool everywhere);
     /// Where drops may appear before the next look: UV, and the volume of a drop as large as the place.
@@ -97,7 +100,7 @@ class BloodBlocks {
     int size_ = 0;
     int tiles_ = 0;     ///< along each side
     int blocks_ = 0;    ///< along each side
-    ListTexture list_;  ///< blocks with a surface, those with cells first
+    ListTexture list_;  ///< see list()
     int listed_ = 0;
     int with_cells_ = 0;
     Pairs tile_pairs_;

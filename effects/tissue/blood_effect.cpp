@@ -424,8 +424,6 @@ void BloodEffect::show(const Pass& pass) {
     state.gpu->begin_picture(pass, medium_, state.ring.alive(), before);
     pass.bind_target();  // the steps draw elsewhere
     const gl::Program& program = pass.use(programs_.size() - 1);
-    pass.bind(program, "u_relief", state.gpu->relief(), gl::Filter::nearest);
-    pass.bind(program, "u_metric", "metric");
     program.set("u_extinction", glm::vec3(params_.look.extinction_per_mm));
     program.set("u_deep", glm::vec3(params_.look.deep_colour));
     program.set("u_covering", static_cast<float>(params_.look.covering_mm));

@@ -84,6 +84,8 @@ void BloodGpu::set_tools(const Pass& pass, const gl::Program& program, const Blo
 }
 
 void BloodGpu::cover_changed(const Pass& pass, const gl::Program& program, Shown before) const {
+    bind(pass, program, "u_relief", relief_);
+    bind(pass, program, "u_lengths", ground_.lengths());
     blocks_.cover_changed(pass, program, before == Shown::nothing);
 }
 
@@ -104,6 +106,7 @@ void BloodGpu::take_surface(const Pass& pass, const BloodMedium& medium, bool em
         pass.draw_fullscreen();
         film_now_ = i == 0 ? 1 - film_now_ : film_now_;
     }
+    ground_.take(pass, blocks_, film(), seams_->place_of_cell);
     if (empty) {
         for (const gl::Framebuffer& target : spawn_target_) {
             clear(pass, target);
@@ -270,7 +273,7 @@ void BloodGpu::step_film(const Pass& pass, const BloodMedium& medium) const {
     program.set("u_one", 1.0F);
     program.set("u_dries", tools || medium.flow.w > 0.0F);
     if (seams) {
-        bind(pass, program, "u_place_of_cell", seams_->place_of_cell);
+        bind(pass, program, "u_across", ground_.across());
         bind(pass, program, "u_came", seams_->came);
     }
     set_medium(program, medium);
@@ -279,7 +282,8 @@ void BloodGpu::step_film(const Pass& pass, const BloodMedium& medium) const {
     blocks_.cover(pass, program, BloodBlocks::Drawn::cells);
     if (seams) {
         const gl::Program& gutters = use(pass, BloodShader::gutter);
-        bind_place(pass, gutters);
+        bind(pass, gutters, "u_film", film());
+        bind(pass, gutters, "u_across", ground_.across());
         blocks_.cover(pass, gutters, BloodBlocks::Drawn::gutters);
     }
 }

@@ -9,6 +9,7 @@
 #include <glm/glm.hpp>
 
 #include "effects/tissue/blood_blocks.h"
+#include "effects/tissue/blood_ground.h"
 #include "effects/tissue/blood_medium.h"
 #include "effects/tissue/blood_seams.h"
 #include "effects/tissue/list_texture.h"
@@ -51,8 +52,6 @@ class BloodGpu {
     };
     /// Finds how high the blood stands.
     void begin_picture(const Pass& pass, const BloodMedium& medium, const DropRange& alive, Shown before);
-    /// Height of film and drops [mm], -1 where there is no surface.
-    [[nodiscard]] const gl::Texture& relief() const { return relief_; }
     /// Draws over each block whose look may have changed, with the program in use and into what is bound.
     void cover_changed(const Pass& pass, const gl::Program& program, Shown before) const;
     /// The picture has been drawn: changes count from now on.
@@ -82,8 +81,11 @@ class BloodGpu {
     const gl::Functions* gl_;
     int size_ = 0;
     BloodBlocks blocks_;
+    BloodGround ground_;
     std::array<gl::Texture, 2> film_;
-    gl::Texture relief_;  ///< of the film as it was stepped last; of drops as they were drawn last
+    /// Height of film and drops [mm], -1 where there is no surface: of the film as it was stepped last, of
+    /// drops as they were drawn last.
+    gl::Texture relief_;
     std::array<gl::Texture, 2> drops_;
     gl::Texture deposit_;
     ListTexture spawn_;

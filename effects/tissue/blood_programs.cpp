@@ -9,6 +9,7 @@ std::vector<ProgramDesc> blood_programs() {
     const char* tile = "tissue/blood_tile.vert";
     return {{whole, "tissue/blood_start.frag", {}},
             {whole, "tissue/blood_start.frag", {"SPILL"}},
+            {whole, "tissue/blood_ground.frag", {}},
             {whole, "tissue/blood_link.frag", {}},
             {whole, "tissue/blood_link.frag", {"RELIEF"}},
             {tile, "tissue/blood_film.frag", {"STEP"}},

@@ -20,6 +20,7 @@ namespace viscera::tissue {
 enum class BloodShader : std::size_t {
     start,
     start_spill,
+    ground,
     link,
     link_relief,
     film,

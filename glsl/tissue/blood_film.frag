@@ -10,8 +10,9 @@ uniform float u_one;
 uniform bool u_dries;  // also where it stands
 #ifdef SEAMS
 #include "tissue/blood_gutter.glsl"
+#include "tissue/blood_ground.glsl"
 #include "tissue/list.glsl"
-uniform sampler2D u_place_of_cell;  // at seams: place in u_came, or -1
+uniform sampler2D u_across;         // of blood_ground.frag
 uniform sampler2D u_came;           // of blood_seam.frag
 #endif
 #ifdef TOOLS
@@ -97,11 +98,11 @@ void main() {
     }
 #ifdef SEAMS
     // What comes across joins the height in the next step. A gutter shows what lies there.
-    int place_of_cell = int(textureLod(u_place_of_cell, uv, 0.0).r);
-    float came = list_item(u_came, max(place_of_cell, 0)).r;
-    o_film.y += place_of_cell >= 0 ? came : 0.0;
-    float across = texelFetch(u_film, film.w < 0.0 ? cell_across(face) : here, 0).x;
-    o_film = film.w < 0.0 ? vec4(across, 0.0, 0.0, film.w) : o_film;
+    float across = texelFetch(u_across, on_ground(here), 0).r;
+    float came = list_item(u_came, film.w > 0.0 ? max(int(across), 0) : 0).r;
+    o_film.y += film.w > 0.0 && across >= 0.0 ? came : 0.0;
+    float there = texelFetch(u_film, film.w < 0.0 ? cell_of_number(max(across, 0.0)) : here, 0).x;
+    o_film = film.w < 0.0 ? vec4(there, 0.0, 0.0, film.w) : o_film;
 #endif
     o_relief = relief_of(o_film);
 }

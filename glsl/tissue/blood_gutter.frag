@@ -1,16 +1,16 @@
 #version 330 core
+#include "tissue/blood_ground.glsl"
 #include "tissue/blood_gutter.glsl"
 #include "tissue/blood_relief.glsl"
 // A step of the film where no cells are: gutters show what lies across the seam.
 uniform sampler2D u_film;
-uniform sampler2D u_right;
+uniform sampler2D u_across;  // of blood_ground.frag
 layout(location = 0) out vec4 o_film;
 layout(location = 1) out float o_relief;
 
 void main() {
-    ivec2 here = ivec2(gl_FragCoord.xy);
-    float kind = texelFetch(u_film, here, 0).w;
-    ivec2 cell = cell_across(texelFetch(u_right, here, 0));
-    o_film = vec4(kind < 0.0 ? texelFetch(u_film, max(cell, ivec2(0)), 0).x : 0.0, 0.0, 0.0, kind);
+    float across = texelFetch(u_across, on_ground(ivec2(gl_FragCoord.xy)), 0).r;
+    float height = texelFetch(u_film, cell_of_number(max(across, 0.0)), 0).x;
+    o_film = across >= 0.0 ? vec4(height, 0.0, 0.0, -1.0) : vec4(0.0);
     o_relief = relief_of(o_film);
 }

@@ -1,7 +1,8 @@
 #version 330 core
+#include "tissue/blood_ground.glsl"
 // What is seen of the blood: its height, its colour, and the slope of its surface.
 uniform sampler2D u_relief;  // height [mm], -1 without a surface
-uniform sampler2D u_metric;
+uniform sampler2D u_lengths;  // of blood_ground.frag
 uniform vec3 u_extinction;  // [1/mm]
 uniform vec3 u_deep;        // colour of a layer without end
 uniform float u_covering;   // height at which the surface below is hidden to 1 - 1/e [mm]
@@ -17,8 +18,9 @@ float at(vec2 uv) {
     return textureLod(u_relief, uv, 0.0).r;
 }
 
-float slope(float low, float here, float high) {
-    float difference = (high < none ? here : high) - (low < none ? here : low);
+/// How much the blood falls from low to high in a texel. Of two that are equal it is 0, never -0, as where nothing is drawn.
+float fall(float low, float here, float high) {
+    float difference = (low < none ? here : low) - (high < none ? here : high);
     return min(low, high) < none ? difference : 0.5 * difference;
 }
 
@@ -27,13 +29,13 @@ void main() {
     vec2 here = gl_FragCoord.xy * unit;
     float centre = at(here);
     float h = max(centre, 0.0);
-    vec2 lengths = max(textureLod(u_metric, here, 0.0).xy, vec2(1e-12));
-    vec2 slopes = vec2(slope(at(here - vec2(unit.x, 0.0)), h, at(here + vec2(unit.x, 0.0))),
-                       slope(at(here - vec2(0.0, unit.y)), h, at(here + vec2(0.0, unit.y)))) / lengths;
+    vec2 lengths = texelFetch(u_lengths, on_ground(ivec2(gl_FragCoord.xy)), 0).rg;
+    vec2 falls = vec2(fall(at(here - vec2(unit.x, 0.0)), h, at(here + vec2(unit.x, 0.0))),
+                      fall(at(here - vec2(0.0, unit.y)), h, at(here + vec2(0.0, unit.y)))) / lengths;
     // Beside charts there is no length to measure a slope by.
-    slopes = centre >= none ? slopes : vec2(0.0);
+    falls = centre >= none ? falls : vec2(0.0);
     o_height = min(h, 60000.0);
     // Without blood exactly 1, as beside it.
     o_colour = vec4(1.0 - (1.0 - u_deep) * (1.0 - exp(-u_extinction * h)), 1.0 - exp(-h / u_covering));
-    o_normal = vec4(normalize(vec3(-clamp(u_bump * slopes, vec2(-100.0), vec2(100.0)), 1.0)), 1.0);
+    o_normal = vec4(normalize(vec3(clamp(u_bump * falls, vec2(-100.0), vec2(100.0)), 1.0)), 1.0);
 }

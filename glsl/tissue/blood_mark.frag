@@ -1,6 +1,7 @@
 #version 330 core
-layout(location = 0) out vec2 o_mark;
+flat in float v_mark;
+layout(location = 0) out vec4 o_mark;
 
 void main() {
-    o_mark = vec2(1.0);
+    o_mark = vec4(v_mark);
 }

@@ -1,8 +1,9 @@
 #version 330 core
 // Marks tiles and blocks by points: those in which drops are, or those across seams from marked ones.
+#include "tissue/blood_held.glsl"
 #ifdef SEAMS
 #include "tissue/list.glsl"
-uniform sampler2D u_pairs;   // one side, other side: x, y each, of tiles or blocks that a seam joins; half more: far from it
+uniform sampler2D u_pairs;   // one side, other side: x, y each, of tiles or blocks that a seam joins; by quarters more: see least_of()
 uniform sampler2D u_marked;
 #ifdef BLOCKS
 uniform sampler2D u_reach;  // of tiles: to be stepped
@@ -15,17 +16,31 @@ uniform int u_first;
 uniform ivec2 u_tile_count;
 uniform vec2 u_film_size;
 uniform bool u_blockwise;  // blocks that a drop reaches, not the tile that it is in
+uniform sampler2D u_gravity;
+uniform vec4 u_flow;
+uniform float u_strength;
+uniform float u_steps;  // until drops are marked again
+#endif
+flat out float v_mark;
+
+#ifdef BLOCKS
+/// How near blood must be to one block so that the other is stepped: gutters show all that is stepped across their seam, a film crosses
+/// it from where it lies, and goes on beyond if it runs far.
+float least_of(vec4 pair) {
+    float kind = 4.0 * fract(pair.w);
+    return kind < 0.5 ? may_come : kind < 1.5 ? lies_there : runs_far;
+}
 #endif
 
 void main() {
     gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
     gl_PointSize = 1.0;
+    v_mark = 1.0;
 #ifdef SEAMS
     vec4 pair = list_item(u_pairs, gl_VertexID);
 #ifdef BLOCKS
-    float most = texelFetch(u_marked, ivec2(pair.xy), 0).r;
-    // A thin film goes no farther than to the blocks that the seam leads to.
-    most = fract(pair.w) > 0.0 && most < 0.9 ? 0.0 : min(most, texelFetch(u_reach, ivec2(pair.zw) / 4, 0).r);
+    bool comes = texelFetch(u_marked, ivec2(pair.xy), 0).r > least_of(pair) - 0.1;
+    float most = comes ? texelFetch(u_reach, ivec2(pair.zw) / 4, 0).r : 0.0;
 #else
     ivec2 last = textureSize(u_marked, 0) - 1;
     float most = 0.0;
@@ -38,23 +53,43 @@ void main() {
     }
 #else
     ivec2 size = textureSize(u_drops, 0);
-    int index = (u_first + gl_VertexID) % (size.x * size.y);
+    int number = u_blockwise ? gl_VertexID / 3 : gl_VertexID;
+    int part = u_blockwise ? gl_VertexID % 3 : 0;
+    int index = (u_first + number) % (size.x * size.y);
     vec4 drop = texelFetch(u_drops, ivec2(index % size.x, index / size.x), 0);
     if (drop.z > 0.0) {
         vec2 at = drop.xy * u_film_size;
         vec2 low = floor(at / 32.0);
         vec2 high = low;
         if (u_blockwise) {
-            // Its outline, in which it leaves its trail. A block around it is drawn as well, which has room for the step's two texels.
-            vec4 metric = texelFetch(u_metric, ivec2(clamp(at, vec2(0.0), u_film_size - 1.0)), 0);
+            // Its outline, in which it leaves its trail.
+            ivec2 texel = ivec2(clamp(at, vec2(0.0), u_film_size - 1.0));
+            vec4 metric = texelFetch(u_metric, texel, 0);
             float sine = sqrt(max(1.0 - metric.z * metric.z, 0.0025));
-            vec2 extent = min(drop_radius(drop.z) / (max(metric.xy, vec2(1e-12)) * sine) + 1.0, vec2(48.0));
-            low = floor(max(at - extent, vec2(0.0)) / 8.0);
-            high = floor(min(at + extent, u_film_size - 0.5) / 8.0);
+            float radius = drop_radius(drop.z);
+            vec2 extent = min(radius / (max(metric.xy, vec2(1e-12)) * sine) + 1.0, vec2(48.0));
+            vec2 way = vec2(0.0);
+            if (part > 0) {
+                // And where it may come to before it is marked again, as fast as in blood_move.frag, with the film that it leaves, which
+                // goes on by a texel in each step but the first, and a texel beyond, whose slope changes with it.
+                vec4 gravity = texelFetch(u_gravity, texel, 0);
+                float height = u_drop.x * radius;
+                way = gravity.xy * (gravity.z * gravity.w * u_flow.x * (1.0 / 3.0) * height * height * u_strength * u_flow.z) * u_film_size;
+                way *= u_steps * min(1.0, 2.0 / max(length(way), 1e-20));
+                extent += u_steps - 1.0;
+                v_mark = drop_comes;
+            }
+            low = floor(max(min(at, at + way) - extent, vec2(0.0)) / 8.0);
+            high = floor(min(max(at, at + way) + extent, u_film_size - 0.5) / 8.0);
         }
+        // Points are square: one at either end covers what is longer than wide.
         vec2 count = high - low + 1.0;
-        gl_PointSize = max(count.x, count.y);
-        gl_Position = vec4((low + high + 1.0) / vec2(u_tile_count) - 1.0, 0.0, 1.0);
+        float longer = max(count.x, count.y);
+        float shorter = min(count.x, count.y);
+        float side = part > 0 && 2.0 * shorter >= longer ? shorter : longer;
+        vec2 corner = part == 2 ? high + 1.0 - side : low;
+        gl_PointSize = side;
+        gl_Position = vec4((2.0 * corner + side) / vec2(u_tile_count) - 1.0, 0.0, 1.0);
     }
 #endif
 }

@@ -2,32 +2,32 @@
 #include "tissue/blood_held.glsl"
 // Which blocks blood may reach within their chart, in tiles that are stepped; and which show blood.
 uniform sampler2D u_reach;    // of tiles: of blood_reach.frag
-uniform sampler2D u_blocks;   // r: see blood_held.glsl; b: shows blood
+uniform sampler2D u_blocks;   // see blood_held.glsl
 uniform sampler2D u_surface;  // r: there is a surface
-layout(location = 0) out vec2 o_near;  // r: by 3/4 that of a thin film, by 1 more; g: to be shown
+layout(location = 0) out vec2 o_near;  // r: see blood_held.glsl; g: to be shown
 layout(location = 1) out vec2 o_plan;  // the same, to which come those across seams
 
 void main() {
     ivec2 block = ivec2(gl_FragCoord.xy);
     ivec2 last = textureSize(u_blocks, 0) - 1;
+    vec4 here = texelFetch(u_blocks, block, 0);
+    bool wet = here.b > 0.5 * (shows_blood + is_wet);
     bool flows = false;
-    bool far = false;
     float shown = 0.0;
     for (int y = -1; y <= 1; ++y) {
         for (int x = -1; x <= 1; ++x) {
             vec4 there = texelFetch(u_blocks, clamp(block + ivec2(x, y), ivec2(0), last), 0);
             int towards = holds_blood + (x < 0 ? goes_right : x > 0 ? goes_left : 0) + (y < 0 ? goes_up : y > 0 ? goes_down : 0);
-            int held = bits_of(there.r);
-            bool comes = (held & towards) == towards;
-            flows = flows || comes;
-            far = far || (comes && (held & goes_far) != 0);
+            flows = flows || (bits_of(wet ? there.r : there.g) & towards) == towards;
             shown = max(shown, there.b);
         }
     }
+    float near = flows ? may_come : 0.0;
+    near = bits_of(here.r) != 0 || here.a > 0.5 * drop_comes ? lies_there : near;
+    near = (bits_of(here.g) & goes_far) != 0 || here.a > 0.5 * (drop_comes + drop_is_there) ? runs_far : near;
     vec2 reach = texelFetch(u_reach, block / 4, 0).rg;
     bool bare = texelFetch(u_surface, block, 0).r < 0.5;
-    bool steps = flows && reach.r > 0.5;
-    bool shows = shown > 0.5 || (flows && reach.g > 0.5);
-    o_near = bare ? vec2(0.0) : vec2(steps ? (far ? 1.0 : 0.75) : 0.0, shows);
+    bool shows = shown > 0.5 || (near > 0.0 && reach.g > 0.5);
+    o_near = bare ? vec2(0.0) : vec2(reach.r > 0.5 ? near : 0.0, shows);
     o_plan = o_near;
 }

@@ -1,4 +1,5 @@
 #version 330 core
+#include "tissue/blood_held.glsl"
 // What has happened in each tile since the last look, from its blocks; tiles that were not stepped are as they were.
 uniform sampler2D u_tiles;   // r: something changed or a drop was there; g: blood was there
 uniform sampler2D u_reach;   // of blood_reach.frag
@@ -14,7 +15,8 @@ void main() {
         ivec2 last = textureSize(u_blocks, 0) - 1;
         vec2 most = vec2(0.0);
         for (int i = 0; i < 16; ++i) {
-            most = max(most, texelFetch(u_blocks, min(tile * 4 + ivec2(i % 4, i / 4), last), 0).gb);
+            vec2 block = texelFetch(u_blocks, min(tile * 4 + ivec2(i % 4, i / 4), last), 0).gb;
+            most = max(most, vec2((bits_of(block.x) & is_changed) != 0, block.y));
         }
         o_mark = most;
     }

@@ -1,0 +1,35 @@
+#include "effects/tissue/blood_ground.h"
+
+#include <algorithm>
+#include <array>
+
+#include "effects/tissue/blood_programs.h"
+#include "engine/runtime/pass.h"
+
+namespace viscera::tissue {
+
+void BloodGround::take(const Pass& pass, const BloodBlocks& blocks, const gl::Texture& film,
+                       const gl::Texture& place_of_cell) {
+    constexpr int in_row = 16;  // as blood_ground.frag
+    constexpr int texels = BloodBlocks::block_side * BloodBlocks::block_side;
+    const int rows = std::max((blocks.count() + in_row - 1) / in_row, 1);
+    if (!lengths_ || lengths_->height() != rows) {
+        target_.reset();
+        lengths_ = gl::Texture::make_2d(pass.gl(), in_row * texels, rows, PixelFormat::rg32f,
+                                        "lengths of texels by blocks");
+        across_ = gl::Texture::make_2d(pass.gl(), in_row * texels, rows, PixelFormat::r32f,
+                                       "what lies across seams by blocks");
+        const std::array<const gl::Texture*, 2> colours{&*lengths_, &*across_};
+        target_.emplace(pass.gl(), colours, nullptr, "ground of blood by blocks");
+    }
+    const gl::Program& program = use(pass, BloodShader::ground);
+    bind(pass, program, "u_list", blocks.list());
+    bind(pass, program, "u_film", film);
+    bind(pass, program, "u_place_of_cell", place_of_cell);
+    pass.bind(program, "u_metric", "metric");
+    pass.bind(program, "u_right", "flow_right");
+    draw_into(pass, *target_, gl::overwrite_state);
+    pass.draw_fullscreen();
+}
+
+}  // namespace viscera::tissue

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <optional>
+
+#include "effects/tissue/blood_blocks.h"
+#include "engine/gl/framebuffer.h"
+#include "engine/gl/texture.h"
+
+namespace viscera::tissue {
+
+/// What the shaders that draw block by block read of a surface, in the order of the blocks: texels of a block
+/// are 8 short rows far apart in a picture, and side by side here.
+class BloodGround {
+  public:
+    /// Of a surface that is new or has moved. `film` knows its cells, `place_of_cell` those at seams.
+    void take(const Pass& pass, const BloodBlocks& blocks, const gl::Texture& film,
+              const gl::Texture& place_of_cell);
+    /// Of texels in u and v [mm].
+    [[nodiscard]] const gl::Texture& lengths() const { return *lengths_; }
+    /// Of gutters the cell across their seam, of cells their place among those at seams, or -1.
+    [[nodiscard]] const gl::Texture& across() const { return *across_; }
+
+  private:
+    std::optional<gl::Texture> lengths_;
+    std::optional<gl::Texture> across_;
+    std::optional<gl::Framebuffer> target_;
+};
+
+}  // namespace viscera::tissue
