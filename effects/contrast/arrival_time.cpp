@@ -10,28 +10,29 @@
 
 namespace viscera::contrast {
 
-std::vector<std::optional<TubeFoot>> vertex_feet(const CentrelineGraph& graph,
-                                                 std::span<const glm::vec3> positions_mm) {
-    std::vector<std::optional<TubeFoot>> feet(positions_mm.size());
+VertexFeet vertex_feet(const CentrelineGraph& graph, std::span<const glm::vec3> positions_mm) {
+    VertexFeet feet;
+    feet.wall.resize(positions_mm.size());
+    feet.axis.resize(positions_mm.size());
     const TubeTree tree(graph);
     std::optional<std::size_t> guess;
     for (std::size_t i = 0; i < positions_mm.size(); ++i) {
         const glm::dvec3 point(positions_mm[i]);
-        const std::optional<TubeFoot> wall = tree.nearest_wall(point, guess);
-        if (wall) {
-            guess = wall->edge;  // neighbours in the mesh are mostly neighbours in memory
-            feet[i] = tree.slide(point, *wall);
+        feet.wall[i] = tree.nearest_wall(point, guess);
+        if (feet.wall[i]) {
+            guess = feet.wall[i]->edge;  // neighbours in the mesh are mostly neighbours in memory
+            feet.axis[i] = tree.slide(point, *feet.wall[i]);
         }
     }
     return feet;
 }
 
-void report_apart(const CentrelineGraph& graph, std::span<const std::optional<TubeFoot>> feet, Log& log) {
+void report_apart(const CentrelineGraph& graph, const VertexFeet& feet, Log& log) {
     constexpr double most_radii = 3.0;
-    const auto apart = static_cast<std::size_t>(std::ranges::count_if(feet, [](const auto& foot) {
+    const auto apart = static_cast<std::size_t>(std::ranges::count_if(feet.wall, [](const auto& foot) {
         return foot && foot->distance_mm > most_radii * (foot->distance_mm - foot->wall_mm);
     }));
-    if (2 * apart > feet.size()) {
+    if (2 * apart > feet.wall.size()) {
         log.fault("contrast.centreline_apart",
                   graph.name +
                       ": most of the vessel's vertices are more than three radii away from it; has "
@@ -41,17 +42,18 @@ void report_apart(const CentrelineGraph& graph, std::span<const std::optional<Tu
 }
 
 std::vector<float> vertex_arrival(const CentrelineGraph& graph, const FlowNetwork& network,
-                                  std::span<const std::optional<TubeFoot>> feet, Log& log) {
-    std::vector<float> arrival(feet.size(), unreached_s);
+                                  const VertexFeet& feet, Log& log) {
+    std::vector<float> arrival(feet.axis.size(), unreached_s);
     std::uint64_t unreached = 0;
-    for (std::size_t i = 0; i < feet.size(); ++i) {
-        if (!feet[i] || !network.carries_contrast(graph, feet[i]->edge)) {
+    for (std::size_t i = 0; i < arrival.size(); ++i) {
+        const std::optional<TubeFoot>& foot = feet.axis[i];
+        if (!foot || !network.carries_contrast(graph, foot->edge)) {
             ++unreached;
             continue;
         }
-        const CentrelineGraph::Edge& edge = graph.edges[feet[i]->edge];
-        arrival[i] = static_cast<float>(
-            std::lerp(network.arrival_s[edge.a], network.arrival_s[edge.b], feet[i]->along));
+        const CentrelineGraph::Edge& edge = graph.edges[foot->edge];
+        arrival[i] =
+            static_cast<float>(std::lerp(network.arrival_s[edge.a], network.arrival_s[edge.b], foot->along));
     }
     if (unreached > 0) {
         log.fault(
@@ -63,17 +65,27 @@ std::vector<float> vertex_arrival(const CentrelineGraph& graph, const FlowNetwor
     return arrival;
 }
 
-std::vector<float> vertex_radius(const CentrelineGraph& graph,
-                                 std::span<const std::optional<TubeFoot>> feet) {
-    std::vector<float> radius(feet.size(), 0.0F);
-    for (std::size_t i = 0; i < feet.size(); ++i) {
-        if (feet[i]) {
-            const CentrelineGraph::Edge& edge = graph.edges[feet[i]->edge];
-            radius[i] = static_cast<float>(
-                std::lerp(graph.nodes[edge.a].radius_mm, graph.nodes[edge.b].radius_mm, feet[i]->along));
+VertexTubes vertex_tubes(const CentrelineGraph& graph, const VertexFeet& feet,
+                         std::span<const glm::vec3> positions_mm) {
+    VertexTubes tubes;
+    tubes.axis.resize(positions_mm.size(), glm::vec4(0.0F));
+    tubes.offset_mm.resize(positions_mm.size(), glm::vec3(0.0F));
+    for (std::size_t i = 0; i < positions_mm.size(); ++i) {
+        if (const std::optional<TubeFoot>& foot = feet.wall[i]) {
+            const CentrelineGraph::Edge& edge = graph.edges[foot->edge];
+            const CentrelineGraph::Node& a = graph.nodes[edge.a];
+            const CentrelineGraph::Node& b = graph.nodes[edge.b];
+            const glm::dvec3 along = b.position_mm - a.position_mm;
+            const glm::dvec3 offset = glm::dvec3(positions_mm[i]) - (a.position_mm + foot->along * along);
+            // Beyond the ends of its edge a wall is round as a ball, which has no axis.
+            const double product = glm::length(along) * glm::length(offset);
+            const double sine = product > 0.0 ? glm::length(glm::cross(along, offset)) / product : 0.0;
+            tubes.axis[i] = glm::vec4(sine > 0.0 ? sine * glm::normalize(along) : glm::dvec3(0.0),
+                                      std::lerp(a.radius_mm, b.radius_mm, foot->along));
+            tubes.offset_mm[i] = offset;
         }
     }
-    return radius;
+    return tubes;
 }
 
 void smooth_arrival(std::span<float> arrival_s, std::span<const glm::vec3> positions_mm,

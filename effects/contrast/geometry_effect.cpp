@@ -15,7 +15,7 @@
 namespace viscera::contrast {
 namespace {
 
-constexpr std::array<std::string_view, 3> method_names{"max", "depth", "painter"};
+constexpr std::array<std::string_view, 4> method_names{"max", "depth", "painter", "thickness"};
 
 }  // namespace
 
@@ -24,6 +24,12 @@ std::span<const std::string_view> choice_names(OverlapMethod) {
 }
 
 void CloudParams::visit(ParamVisitor& v) {
+    v.field(
+        {.name = "centre_mm",
+         .doc = "Where the contrast leaves the catheter, in the mesh's frame; by default the injection. A "
+                "catheter that is part of the vessels is filled from its other end.",
+         .unit = "mm"},
+        centre_mm);
     v.field({.name = "radius_mm",
              .doc = "Contrast is densest up to two thirds of this distance from the injection and none "
                     "beyond it; 0: no cloud.",
@@ -69,6 +75,10 @@ struct GeometryEffect::GpuVessel {
                                    [](float weight) { return glm::vec2(weight, 0.0F); });
             mesh.update_uvs(uvs);
         }
+        if (!vessel->tubes.axis.empty()) {
+            mesh.update_colours(vessel->tubes.axis);
+            mesh.update_normals(vessel->tubes.offset_mm);
+        }
     }
     std::shared_ptr<const Vessel> vessel;  ///< known by its address, which thus stays its own
     gl::Mesh mesh;
@@ -83,13 +93,17 @@ void GeometryEffect::list_variants() {
     using enum Scalar;
     const bool alone = outputs_.main && !outputs_.cloud && !outputs_.distance;
     for (const Scalar scalar : {none, density, arrival, arrival_table}) {
-        for (int bits = 0; bits < 16; ++bits) {
-            const Variant variant{scalar, (bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0, (bits & 8) != 0};
+        for (int bits = 0; bits < 32; ++bits) {
+            const auto bit = [bits](int i) { return ((bits >> i) & 1) != 0; };
+            const Variant variant{scalar, bit(0), bit(1), bit(2), bit(3), bit(4)};
             const bool draws = scalar != none || variant.cloud || variant.distance;
             const bool made_here = (scalar == none || outputs_.main) && (!variant.cloud || outputs_.cloud) &&
                                    (!variant.distance || outputs_.distance);
             const bool weighted = scalar == arrival || scalar == arrival_table;
-            if (!draws || !made_here || (variant.depth && !alone) || (variant.calibre && !weighted)) {
+            const bool alone_only = variant.depth || variant.thickness;
+            if (!draws || !made_here || (alone_only && !alone) ||
+                ((variant.calibre || variant.thickness) && !weighted) ||
+                (variant.thickness && (variant.calibre || variant.depth))) {
                 continue;
             }
             int location = 0;
@@ -119,6 +133,9 @@ void GeometryEffect::list_variants() {
             if (variant.depth) {
                 define("DEPTH");
             }
+            if (variant.thickness) {
+                define("THICKNESS");
+            }
             variants_.push_back(variant);
             programs_.push_back(std::move(program));
         }
@@ -136,9 +153,15 @@ void GeometryEffect::validate() const {
                     "is needed: without a centreline, contrast spreads over the surface from there");
     }
     if (params_.method != OverlapMethod::max && (outputs_.cloud || outputs_.distance)) {
-        throw Error(
-            ErrorCode::scene, "/method",
-            "depth and painter keep one fragment for all outputs; draw contrast.main in a pass of its own");
+        throw Error(ErrorCode::scene, "/method",
+                    "only max draws several targets at once; draw contrast.main in a pass of its own");
+    }
+    if (params_.method == OverlapMethod::thickness &&
+        (vessel.density != DensitySource::arrival_time || vessel.centreline.empty() ||
+         vessel.full_calibre_mm == 0.0)) {
+        throw Error(ErrorCode::scene, "/method",
+                    "thickness needs a centreline, which knows radii, and the full_calibre_mm on which "
+                    "contrast shows in full");
     }
     if (vessel.density == DensitySource::per_vertex && params_.delay_s > 0.0) {
         throw Error(ErrorCode::scene, "/delay_s", "densities given per vertex have no earlier time");
@@ -218,6 +241,19 @@ bool GeometryEffect::makes_density(double since_start_s) const {
                             since_start_s - static_cast<double>(vessel_->first_arrival_s));
 }
 
+glm::dvec3 GeometryEffect::cloud_centre() const {
+    return params_.cloud.centre_mm.value_or(vessel_->injection_mm);
+}
+
+/// The part of the vessel's box that the cloud reaches.
+Bounds GeometryEffect::cloud_bounds() const {
+    const glm::vec3 low(cloud_centre() - params_.cloud.radius_mm);
+    const glm::vec3 high(cloud_centre() + params_.cloud.radius_mm);
+    const Bounds bounds{glm::max(vessel_->bounds.min, low), glm::min(vessel_->bounds.max, high)};
+    const bool apart = glm::any(glm::greaterThan(bounds.min, bounds.max));
+    return apart ? Bounds{} : bounds;
+}
+
 Work GeometryEffect::prepare(Prepare& prepare) {
     if (parameters_key_ != prepare.parameters_key()) {
         parameters_key_ = prepare.parameters_key();
@@ -256,7 +292,8 @@ Work GeometryEffect::prepare(Prepare& prepare) {
         variant_.scalar = !arrival                          ? Scalar::density
                           : bolus_->table().samples.empty() ? Scalar::arrival
                                                             : Scalar::arrival_table;
-        variant_.calibre = arrival && !vessel_->weight.empty();
+        variant_.thickness = params_.method == OverlapMethod::thickness;
+        variant_.calibre = arrival && !vessel_->weight.empty() && !variant_.thickness;
     }
     if (variant_.scalar == Scalar::none && !variant_.cloud && !variant_.distance) {
         return Work::idle(outputs_.main ? "no contrast in the vessels at this time"
@@ -281,15 +318,22 @@ Work GeometryEffect::prepare(Prepare& prepare) {
         const bool constant = range.lower == range.upper && vessel_->last_arrival_s < unreached_s;
         key.add(constant ? range.lower : since_start_s_);
     }
-    const std::string_view any = outputs_.main ? "main" : outputs_.cloud ? "cloud" : "distance";
-    const glm::ivec2 size = prepare.size(any);
-    const PixelRect region = project_bounds(vessel_->bounds, view_projection, size);
+    // One that is drawn: what nobody reads has no size.
+    const std::string_view drawn = variant_.scalar != Scalar::none ? "main"
+                                   : variant_.cloud                ? "cloud"
+                                                                   : "distance";
+    const glm::ivec2 size = prepare.size(drawn);
+    const bool cloud_alone = outputs_.cloud && !outputs_.main && !outputs_.distance;
+    const Bounds bounds = cloud_alone ? cloud_bounds() : vessel_->bounds;
+    const PixelRect region = project_bounds(bounds, view_projection, size);
     if (region.empty()) {
-        return Work::idle("the vessel lies outside the view");
+        return Work::idle(cloud_alone ? "the cloud lies outside the view"
+                                      : "the vessel lies outside the view");
     }
     const bool part = region != PixelRect{0, 0, size.x, size.y};
-    Work work = part ? Work::in_region(region, "only where the vessel can be seen", key.value())
-                     : Work::all(key.value());
+    const char* reason =
+        cloud_alone ? "only where the cloud can be seen" : "only where the vessel can be seen";
+    Work work = part ? Work::in_region(region, reason, key.value()) : Work::all(key.value());
     work.empty_outputs = empty;
     return work;
 }
@@ -325,8 +369,13 @@ void GeometryEffect::draw(const Pass& pass) {
     const gl::Program& program = pass.use(index);
     program.set("u_view_projection", glm::mat4(pass.frame().eye().view_projection()));
     program.set("u_tone", static_cast<float>(params_.tone));
+    if (variant_.thickness) {
+        const View& view = pass.frame().eye();
+        program.set("u_eye", view.orthographic ? glm::vec4(-view.forward, 0.0) : glm::vec4(view.eye_mm, 1.0));
+        program.set("u_inv_calibre", static_cast<float>(1.0 / params_.vessel.full_calibre_mm));
+    }
     program.set("u_time_since_start", static_cast<float>(since_start_s_));
-    program.set("u_injection_point", glm::vec3(vessel_->injection_mm));
+    program.set("u_injection_point", glm::vec3(cloud_centre()));
     program.set("u_inv_radius",
                 params_.cloud.radius_mm > 0.0 ? static_cast<float>(1.0 / params_.cloud.radius_mm) : 0.0F);
     program.set("u_brightness", static_cast<float>(brightness_));
@@ -362,6 +411,9 @@ void GeometryEffect::draw(const Pass& pass) {
         case OverlapMethod::painter:
             sort_triangles(gpu);
             pass.raster(gl::overwrite_state);
+            break;
+        case OverlapMethod::thickness:
+            pass.raster(gl::add_blend_state);
             break;
     }
     gpu.mesh.draw();

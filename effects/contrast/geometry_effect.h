@@ -12,14 +12,16 @@ namespace viscera::contrast {
 
 /// How the densest of the fragments that cover a pixel is found.
 enum class OverlapMethod {
-    max,      ///< maximum blending: in any order, with early tests
-    depth,    ///< the fragment writes its density as depth, GL_GREATER keeps the densest
-    painter,  ///< triangles sorted from dim to bright; exact where density is constant over each triangle
+    max,        ///< maximum blending: in any order, with early tests
+    depth,      ///< the fragment writes its density as depth, GL_GREATER keeps the densest
+    painter,    ///< triangles sorted from dim to bright; exact where density is constant over each triangle
+    thickness,  ///< none: walls add up, each by the way of the ray to the vessel's axis
 };
 [[nodiscard]] std::span<const std::string_view> choice_names(OverlapMethod method);
 
 /// The denser the contrast at the injection, the nearer to it: a cloud around the point.
 struct CloudParams {
+    std::optional<glm::dvec3> centre_mm;
     double radius_mm = 8.0;
     double brightness = 1.0;
     double threshold = 0.02;
@@ -66,6 +68,7 @@ class GeometryEffect final : public Effect {
         bool distance = false;
         bool depth = false;
         bool calibre = false;
+        bool thickness = false;
         bool operator==(const Variant&) const = default;
     };
 
@@ -73,6 +76,8 @@ class GeometryEffect final : public Effect {
     [[nodiscard]] std::uint32_t port_bit(std::string_view port) const;
     bool update_density(Prepare& prepare);
     [[nodiscard]] bool makes_density(double since_start_s) const;
+    [[nodiscard]] glm::dvec3 cloud_centre() const;
+    [[nodiscard]] Bounds cloud_bounds() const;
     void sort_triangles(GpuVessel& gpu);
 
     Outputs outputs_;

@@ -5,7 +5,7 @@
 namespace viscera::contrast {
 
 std::span<const std::string_view> choice_names(SummarizeTransition /*transition*/) {
-    static constexpr std::array<std::string_view, 2> names{"smooth", "thesis"};
+    static constexpr std::array<std::string_view, 3> names{"smooth", "thesis", "densest"};
     return names;
 }
 

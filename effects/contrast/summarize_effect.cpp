@@ -6,12 +6,15 @@ namespace viscera::contrast {
 
 SummarizeEffect::SummarizeEffect()
     : programs_{{"common/fullscreen.vert", "contrast/summarize.frag", {}},
-                {"common/fullscreen.vert", "contrast/summarize.frag", {"THESIS_TRANSITION"}}} {}
+                {"common/fullscreen.vert", "contrast/summarize.frag", {"THESIS_TRANSITION"}},
+                {"common/fullscreen.vert", "contrast/summarize.frag", {"DENSEST"}}} {}
 
 void SummarizeEffect::visit(ParamVisitor& visitor) {
-    visitor.field(
-        {.name = "transition", .doc = "smooth blends where main outweighs the cloud; thesis jumps there."},
-        transition_);
+    visitor.field({.name = "transition",
+                   .doc = "Where main outweighs the cloud, thesis jumps and smooth blends; with densest the "
+                          "cloud never makes "
+                          "a vessel lighter."},
+                  transition_);
 }
 
 std::vector<Port> SummarizeEffect::ports() const {

@@ -27,15 +27,15 @@ void find_arrival(Vessel& vessel, const VesselParams& params, Log& log) {
     }
     const CentrelineGraph graph = io::load_centreline(params.centreline.path, log);
     const FlowNetwork network = solve_flow(graph, params.flow, params.injection_mm, log);
-    const std::vector<std::optional<TubeFoot>> feet = vertex_feet(graph, positions);
+    const VertexFeet feet = vertex_feet(graph, positions);
     report_apart(graph, feet, log);
     vessel.scalar = vertex_arrival(graph, network, feet, log);
     smooth_arrival(vessel.scalar, positions, vessel.mesh.indices, params.smoothing_rounds);
+    vessel.tubes = vertex_tubes(graph, feet, positions);
     if (params.full_calibre_mm > 0.0) {
-        vessel.weight = vertex_radius(graph, feet);
-        for (float& weight : vessel.weight) {
-            weight =
-                static_cast<float>(std::min(1.0, 2.0 * static_cast<double>(weight) / params.full_calibre_mm));
+        for (const glm::vec4& axis : vessel.tubes.axis) {
+            vessel.weight.push_back(static_cast<float>(
+                std::min(1.0, 2.0 * static_cast<double>(axis.w) / params.full_calibre_mm)));
         }
     }
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "effects/contrast/arrival_time.h"
 #include "effects/contrast/flow_network.h"
 #include "effects/contrast/geodesic.h"
 #include "engine/core/mesh_data.h"
@@ -40,6 +41,7 @@ struct Vessel {
     std::vector<float> scalar;
     /// Share of the bolus's density that shows, by the vessel's calibre; empty: all of it everywhere.
     std::vector<float> weight;
+    VertexTubes tubes;  ///< with a centreline: the vessel around each vertex
     float first_arrival_s =
         0.0F;  ///< over the vertices that contrast reaches; first > last where it reaches none
     float last_arrival_s = -1.0F;

@@ -10,6 +10,10 @@ in float v_scalar;
 #ifdef CALIBRE
 in float v_weight;
 #endif
+#ifdef THICKNESS
+in float v_half_way;
+uniform float u_inv_calibre;  // 1 / the way on which the density shows in full [1/mm]
+#endif
 uniform float u_tone;
 layout(location = MAIN) out float o_main;
 #endif
@@ -43,6 +47,9 @@ void main() {
     float density = clamp(v_scalar, 0.0, 1.0);
 #endif
     o_main = u_tone * density * contrast_opacity(density);
+#ifdef THICKNESS
+    o_main *= abs(v_half_way) * u_inv_calibre;
+#endif
 #ifdef DEPTH
     // The density itself with a GREATER test, not 1 - density with LESS: near 0 a float keeps the small differences that
     // the subtraction would round away, so this gives the very picture of the maximum.

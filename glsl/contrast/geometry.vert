@@ -11,6 +11,22 @@ out float v_scalar;
 in vec2 a_uv;  // x: share of the density that shows in a vessel of this calibre
 out float v_weight;
 #endif
+#ifdef THICKNESS
+in vec3 a_normal;      // from the vessel's axis to this vertex [mm]
+in vec4 a_color;       // xyz: direction of the axis, shorter at rounded ends
+uniform vec4 u_eye;    // xyz: the eye [mm] and w = 1; or against the parallel rays and w = 0
+out float v_half_way;  // of the ray, from the axis to this wall [mm], negative in front of the axis
+
+// A ray that crosses the axis at a slant goes 1 / sin of it as far as in the cross-section. Along the axis that grows without bound, but
+// vessels bend.
+float half_way() {
+    const float least_slant = 0.3;
+    vec3 sight = normalize(u_eye.w * a_position - u_eye.xyz);
+    vec3 across = sight - dot(sight, a_color.xyz) * a_color.xyz;
+    float slant = length(across);
+    return dot(a_normal, across) / (max(slant, 1e-4) * max(slant, least_slant));
+}
+#endif
 #endif
 #ifdef INJECTION
 uniform vec3 u_injection_point;  // [mm]
@@ -23,6 +39,9 @@ void main() {
     v_weight = a_uv.x;
 #endif
 #ifdef MAIN
+#ifdef THICKNESS
+    v_half_way = half_way();
+#endif
 #ifdef ARRIVAL
     // The difference is formed here: near the front it is small, and so is the rounding of its interpolation.
     v_scalar = u_time_since_start - a_scalar;

@@ -11,6 +11,9 @@ void main() {
     float main_value = texelFetch(u_main, pixel, 0).r;
     vec2 cloud = texelFetch(u_cloud, pixel, 0).rg;
     float r = mix(main_value, cloud.r, cloud.g);
+#ifdef DENSEST
+    o_summary = max(main_value, r);
+#else
     float joined = 0.5 * (r + main_value);
     float excess = 0.9 * main_value - r;
 #ifdef THESIS_TRANSITION
@@ -19,4 +22,5 @@ void main() {
     float weight = smoothstep(-half_width, half_width, excess);
 #endif
     o_summary = cloud.g > 0.0 ? mix(r, joined, weight) : main_value;
+#endif
 }

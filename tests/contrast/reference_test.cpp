@@ -156,10 +156,11 @@ TEST(ReferenceContrast, SummarizeFollowsTheWrittenCurve) {
             c.at(x, y, 1) = dropped ? 0.0 : q;
         }
     }
-    for (const bool smooth : {false, true}) {
-        const Buffer r = summarize(main, c, d, smooth);
-        const auto transition =
-            smooth ? contrast::SummarizeTransition::smooth : contrast::SummarizeTransition::thesis;
+    for (const auto& [named, transition] :
+         {std::pair(Transition::smooth, contrast::SummarizeTransition::smooth),
+          {Transition::thesis, contrast::SummarizeTransition::thesis},
+          {Transition::densest, contrast::SummarizeTransition::densest}}) {
+        const Buffer r = summarize(main, c, d, named);
         for (int y = 0; y < 64; ++y) {
             for (int x = 0; x < 64; ++x) {
                 ASSERT_NEAR(r.at(x, y),
@@ -168,6 +169,17 @@ TEST(ReferenceContrast, SummarizeFollowsTheWrittenCurve) {
             }
         }
     }
+}
+
+TEST(SummarizeCurve, DensestNeverMakesAVesselLighter) {
+    using contrast::SummarizeTransition;
+    for (double q = 0.0; q <= 1.0; q += 1.0 / 64) {
+        EXPECT_EQ(contrast::summarize(1.0, q, q, SummarizeTransition::densest), 1.0);
+        EXPECT_EQ(contrast::summarize(1.3, q, q, SummarizeTransition::densest), 1.3);
+        EXPECT_GE(contrast::summarize(0.2, q, q, SummarizeTransition::densest), 0.2);
+    }
+    EXPECT_LT(contrast::summarize(1.0, 0.5, 0.5, SummarizeTransition::smooth), 0.9) << "the pale ring";
+    EXPECT_EQ(contrast::summarize(0.2, 1.0, 1.0, SummarizeTransition::densest), 1.0);
 }
 
 TEST(SummarizeCurve, SmoothHasNoJumpAndMeetsTheThesisAwayFromTheLine) {

@@ -42,7 +42,10 @@ class PictureAccuracy : public testing::TestWithParam<bool> {
 };
 
 TEST_P(PictureAccuracy, Summarize) {
-    for (const char* transition : {"smooth", "thesis"}) {
+    using reference::Transition;
+    for (const auto& [transition, wanted] : {std::pair("smooth", Transition::smooth),
+                                             {"thesis", Transition::thesis},
+                                             {"densest", Transition::densest}}) {
         render({NoisePictures::fill("contrast.main", pictures_.noise(1, width, height)),
                 NoisePictures::fill("contrast.cloud", pictures_.noise(2, width, height), false),
                 pass("summarize", "contrast.summarize", {{"transition", transition}})},
@@ -55,8 +58,7 @@ TEST_P(PictureAccuracy, Summarize) {
             distance.data[i] = cloud.data[2 * i + 1];
         }
         expect(std::string("summarize, ") + transition, "contrast.summary",
-               reference::summarize(read("contrast.main"), cloud, distance,
-                                    std::string_view(transition) == "smooth"));
+               reference::summarize(read("contrast.main"), cloud, distance, wanted));
     }
 }
 

@@ -221,6 +221,20 @@ TEST_F(Skip, WhatNoOutputNeedsIsCulled) {
     expect_cold(without, 0.7);
 }
 
+/// A later pass draws the vessels, so that of one pass's three pictures nobody reads the first.
+TEST_F(Skip, OfSeveralPicturesThoseThatAreReadAreDrawn) {
+    json scene = chain();
+    json again = pass_in(scene, "vessels");
+    again["name"] = "again";
+    again["effect"] = "contrast.main";
+    scene["passes"].insert(scene["passes"].begin() + 2, again);
+    stage_.load(scene);
+    render(0.7);
+    EXPECT_TRUE(draws("vessels"));
+    EXPECT_TRUE(draws("summarize"));
+    expect_cold(chain(), 0.7);
+}
+
 TEST_F(Skip, OnlyThePartThatTheVesselCanCoverIsDrawn) {
     json scene = chain();
     scene["camera"]["detector_height_mm"] = 400;

@@ -22,6 +22,7 @@ VesselPicture::VesselPicture(const nlohmann::json& parameters, const View& view,
     vessel_ = contrast::load_vessel(assets, params_.vessel);
     mesh_.positions_mm.assign(vessel_->mesh.positions.begin(), vessel_->mesh.positions.end());
     mesh_.indices = vessel_->mesh.indices;
+    eye_ = view;
     view_projection_ = view.view_projection();
     view_.raster = {.width = width, .height = height, .snap_bits = 8};
     shift(glm::dvec2(0.0));
@@ -51,6 +52,25 @@ reference::Buffer VesselPicture::main(const Density& density, double tone) const
         [&](const reference::Fragment& f) {
             return density(f.interpolate(scalar)) * (weight.empty() ? 1.0 : f.interpolate(weight));
         },
+        tone);
+}
+
+reference::Buffer VesselPicture::thickness(const Density& density, double tone) const {
+    const std::vector<double> scalar(vessel_->scalar.begin(), vessel_->scalar.end());
+    // In the cross-section as the ray sees it, then along the ray: 1 / sin of its slant to the axis, which
+    // counts as 0.3 at least.
+    std::vector<double> way;
+    for (std::size_t v = 0; v < scalar.size(); ++v) {
+        const glm::dvec3 axis(vessel_->tubes.axis[v]);
+        const glm::dvec3 sight = eye_.direction_to(mesh_.positions_mm[v]);
+        const glm::dvec3 across = sight - glm::dot(sight, axis) * axis;
+        const double slant = glm::length(across);
+        way.push_back(glm::dot(glm::dvec3(vessel_->tubes.offset_mm[v]), across) /
+                      (std::max(slant, 1e-4) * std::max(slant, 0.3)));
+    }
+    return reference::thick_object(
+        mesh_, view_, [&](const reference::Fragment& f) { return density(f.interpolate(scalar)); },
+        [&](const reference::Fragment& f) { return f.interpolate(way); }, params_.vessel.full_calibre_mm,
         tone);
 }
 

@@ -24,6 +24,8 @@ class VesselPicture {
     /// Density by vertex scalar (arrival time or density), evaluated per fragment.
     using Density = std::function<double(double scalar)>;
     [[nodiscard]] reference::Buffer main(const Density& density, double tone = 1.0) const;
+    /// The same where walls add up.
+    [[nodiscard]] reference::Buffer thickness(const Density& density, double tone = 1.0) const;
     /// The same with densities of the host instead of the mesh's own scalar.
     [[nodiscard]] reference::Buffer main_of(std::span<const float> vertex_density, double tone = 1.0) const;
     /// Both with the cloud's brightness at that time.
@@ -41,6 +43,7 @@ class VesselPicture {
     contrast::GeometryParams params_;
     std::shared_ptr<const contrast::Vessel> vessel_;
     reference::ContrastMesh mesh_;
+    View eye_;
     glm::dmat4 view_projection_{1.0};
     reference::ContrastView view_;
     reference::Buffer coverage_;

@@ -132,6 +132,16 @@ Buffer main_object(const ContrastMesh& mesh, const ContrastView& view, const Den
     return out;
 }
 
+Buffer thick_object(const ContrastMesh& mesh, const ContrastView& view, const DensityAt& density,
+                    const DensityAt& way_mm, double calibre_mm, double tone) {
+    Buffer out(view.raster.width, view.raster.height);
+    rasterise(mesh.positions_mm, mesh.indices, view.view_projection, view.raster, [&](const Fragment& f) {
+        const double a = clamp01(density(f));
+        out.at(f.x, f.y) += tone * a * opacity_loop(a) * std::abs(way_mm(f)) / calibre_mm;
+    });
+    return out;
+}
+
 double injection_weight(const Injection& injection, const glm::dvec3& place_mm) {
     if (!(injection.radius_mm > 0.0) || !std::isfinite(injection.radius_mm)) {
         return 0.0;
@@ -162,7 +172,7 @@ Buffer distance_map(const ContrastMesh& mesh, const ContrastView& view, const In
     return out;
 }
 
-Buffer summarize(const Buffer& main, const Buffer& cloud, const Buffer& distance, bool smooth) {
+Buffer summarize(const Buffer& main, const Buffer& cloud, const Buffer& distance, Transition transition) {
     constexpr double width = 0.05;
     Buffer out(main.width, main.height);
     for (int y = 0; y < main.height; ++y) {
@@ -170,6 +180,11 @@ Buffer summarize(const Buffer& main, const Buffer& cloud, const Buffer& distance
             const double m = main.at(x, y);
             const double r = std::lerp(m, cloud.at(x, y, 0), cloud.at(x, y, 1));
             const double excess = 0.9 * m - r;
+            if (transition == Transition::densest) {
+                out.at(x, y) = std::max(m, r);
+                continue;
+            }
+            const bool smooth = transition == Transition::smooth;
             const double amount = smooth ? smoothstep(-width, width, excess) : (excess > 0.0 ? 1.0 : 0.0);
             out.at(x, y) = distance.at(x, y) > 0.0 ? std::lerp(r, 0.5 * (r + m), amount) : r;
         }

@@ -34,6 +34,12 @@ using DensityAt = std::function<double(const Fragment&)>;
 [[nodiscard]] Buffer main_object(const ContrastMesh& mesh, const ContrastView& view, const DensityAt& density,
                                  double tone = 1.0);
 
+/// Stage 1 where walls add up: the sum over all fragments of tone * a * S_N(a) * |way| / calibre, with the
+/// way [mm] that the ray goes from the vessel's axis to the wall.
+[[nodiscard]] Buffer thick_object(const ContrastMesh& mesh, const ContrastView& view,
+                                  const DensityAt& density, const DensityAt& way_mm, double calibre_mm,
+                                  double tone);
+
 struct Injection {
     glm::dvec3 position_mm{0.0};
     double radius_mm = 1.0;   ///< <= 0 or not finite: no injection
@@ -51,8 +57,12 @@ struct Injection {
 [[nodiscard]] Buffer distance_map(const ContrastMesh& mesh, const ContrastView& view,
                                   const Injection& injection);
 
-/// Stage 4, with smooth transition or the thesis's jump (effects/contrast/summarize_curve.h has the text).
-[[nodiscard]] Buffer summarize(const Buffer& main, const Buffer& cloud, const Buffer& distance, bool smooth);
+enum class Transition { smooth, thesis, densest };
+
+/// Stage 4, with smooth transition, the thesis's jump, or the larger of main and r
+/// (effects/contrast/summarize_curve.h has the text).
+[[nodiscard]] Buffer summarize(const Buffer& main, const Buffer& cloud, const Buffer& distance,
+                               Transition transition);
 
 /// One picture of the smoke, seen at an angle between view direction and emitter axis: 90 is from the side.
 struct SpriteView {

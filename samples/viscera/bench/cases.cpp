@@ -9,7 +9,7 @@ std::span<const Case> all_cases() {
         {"ceilings", "copy and clear per format, fetches, exp, vertices, triangles", run_ceilings},
         {"readback", "read-back per format, waiting and not waiting", run_read_back},
         {"geometry", "one pass over the vessels against three", run_geometry},
-        {"overlap", "densest fragment by max, depth and painter", run_overlap},
+        {"overlap", "densest fragment by max, depth and painter; vessels that add up", run_overlap},
         {"summarize", "against a copy of the same bytes", run_summarize},
         {"composite", "by layers and tone, against a copy of the same bytes", run_composite},
         {"gaussian", "by sigma, against as many plain fetches", run_gaussian},

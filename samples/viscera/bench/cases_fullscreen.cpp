@@ -72,7 +72,7 @@ void run_summarize(Lab& lab) {
     scene.target("copy", "r16f");
     scene.pass("copy", "bench.copy2", {}, {{"a", "main"}, {"b", "cloud"}, {"out", "copy"}});
     scene.output("copy").output("main").output("cloud");
-    const std::array<const char*, 2> transitions{"smooth", "thesis"};
+    const std::array<const char*, 3> transitions{"smooth", "thesis", "densest"};
     for (const char* transition : transitions) {
         scene.target(transition, "r16f");
         scene.pass(transition, "contrast.summarize", {{"transition", transition}},
