@@ -299,7 +299,7 @@ TEST_F(Schema, ShippedScenesAreValidAndWrongOnesAreNot) {
     wrong("unknown_parameter", "/passes/0/parameters/nonsense", 1);
     wrong("wrong_type", "/resolution", "large");
     wrong("unknown_effect", "/passes/0/effect", "contrast.nonsense");
-    wrong("out_of_range", "/passes/8/parameters/darkest", 7);
+    wrong("out_of_range", "/passes/9/parameters/darkest", 7);
     const Ended checked =
         run({"python3", std::string(VISCERA_SOURCE_DIR) + "/tests/core/check_schema.py",
              (folder / "schema.json").string(), std::string(VISCERA_SOURCE_DIR) + "/assets/scenes",
