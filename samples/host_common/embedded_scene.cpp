@@ -26,7 +26,7 @@ void log(viscera::LogLevel level, std::string_view message) {
 EmbeddedScene::EmbeddedScene(viscera::ProcAddress proc, const std::filesystem::path& scene)
     : registry_(all_effects()), renderer_(proc, registry_, {.log = log}) {
     // The scene names an array of the host's, from which its smoke gets more emitters.
-    const viscera::SceneOverride contacts{"/passes/3/parameters/host_emitters", "contacts"};
+    const viscera::SceneOverride contacts{"/passes/4/parameters/host_emitters", "contacts"};
     renderer_.set_scene(viscera::load_scene(scene, std::span(&contacts, 1)));
 }
 
