@@ -69,15 +69,19 @@ struct GeometryEffect::GpuVessel {
         : vessel(std::move(drawn)), mesh(gl, vessel->mesh) {
         mesh.update_scalars("scalar", vessel->scalar);
         mesh.select_scalar("scalar");
-        if (!vessel->weight.empty()) {
-            std::vector<glm::vec2> uvs(vessel->weight.size());
-            std::ranges::transform(vessel->weight, uvs.begin(),
-                                   [](float weight) { return glm::vec2(weight, 0.0F); });
-            mesh.update_uvs(uvs);
-        }
-        if (!vessel->tubes.axis.empty()) {
-            mesh.update_colours(vessel->tubes.axis);
-            mesh.update_normals(vessel->tubes.offset_mm);
+        // What the shader knows of the vessel around a vertex, in attributes that a vessel has no other use
+        // for.
+        const VertexTubes& tubes = vessel->tubes;
+        if (!tubes.axis.empty()) {
+            std::vector<glm::vec2> weight_and_axis_x(tubes.axis.size());
+            std::vector<glm::vec2> axis_yz(tubes.axis.size());
+            for (std::size_t i = 0; i < tubes.axis.size(); ++i) {
+                weight_and_axis_x[i] = {vessel->weight.empty() ? 1.0F : vessel->weight[i], tubes.axis[i].x};
+                axis_yz[i] = {tubes.axis[i].y, tubes.axis[i].z};
+            }
+            mesh.update_uvs(weight_and_axis_x);
+            mesh.update_picture_uvs(axis_yz);
+            mesh.update_normals(tubes.offset_mm);
         }
     }
     std::shared_ptr<const Vessel> vessel;  ///< known by its address, which thus stays its own

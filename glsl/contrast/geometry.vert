@@ -7,13 +7,15 @@ in float a_scalar;  // ARRIVAL: arrival time [s]; otherwise density
 uniform float u_time_since_start;  // [s]
 #endif
 out float v_scalar;
+#if defined(CALIBRE) || defined(THICKNESS)
+in vec2 a_uv;  // x: share of the density that shows in a vessel of this calibre, y: the axis's x
+#endif
 #ifdef CALIBRE
-in vec2 a_uv;  // x: share of the density that shows in a vessel of this calibre
 out float v_weight;
 #endif
 #ifdef THICKNESS
 in vec3 a_normal;      // from the vessel's axis to this vertex [mm]
-in vec4 a_color;       // xyz: direction of the axis, shorter at rounded ends
+in vec2 a_picture_uv;  // the axis's y and z: its direction, shorter at rounded ends
 uniform vec4 u_eye;    // xyz: the eye [mm] and w = 1; or against the parallel rays and w = 0
 out float v_half_way;  // of the ray, from the axis to this wall [mm], negative in front of the axis
 
@@ -22,7 +24,8 @@ out float v_half_way;  // of the ray, from the axis to this wall [mm], negative 
 float half_way() {
     const float least_slant = 0.3;
     vec3 sight = normalize(u_eye.w * a_position - u_eye.xyz);
-    vec3 across = sight - dot(sight, a_color.xyz) * a_color.xyz;
+    vec3 axis = vec3(a_uv.y, a_picture_uv);
+    vec3 across = sight - dot(sight, axis) * axis;
     float slant = length(across);
     return dot(a_normal, across) / (max(slant, 1e-4) * max(slant, least_slant));
 }
