@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "effects/contrast/density.h"
+#include "effects/contrast/gpu_vessel.h"
 #include "engine/core/error.h"
 #include "engine/core/hash.h"
-#include "engine/gl/mesh.h"
 #include "engine/gl/texture.h"
 #include "engine/runtime/pass.h"
 #include "engine/runtime/region.h"
@@ -62,32 +62,6 @@ void GeometryParams::visit(ParamVisitor& v) {
                     "contrast.main alone."},
             method);
 }
-
-/// The vessel on the GPU, shared by all passes that draw it.
-struct GeometryEffect::GpuVessel {
-    GpuVessel(const gl::Functions& gl, std::shared_ptr<const Vessel> drawn)
-        : vessel(std::move(drawn)), mesh(gl, vessel->mesh) {
-        mesh.update_scalars("scalar", vessel->scalar);
-        mesh.select_scalar("scalar");
-        // What the shader knows of the vessel around a vertex, in attributes that a vessel has no other use
-        // for.
-        const VertexTubes& tubes = vessel->tubes;
-        if (!tubes.axis.empty()) {
-            std::vector<glm::vec2> weight_and_axis_x(tubes.axis.size());
-            std::vector<glm::vec2> axis_yz(tubes.axis.size());
-            for (std::size_t i = 0; i < tubes.axis.size(); ++i) {
-                weight_and_axis_x[i] = {vessel->weight.empty() ? 1.0F : vessel->weight[i], tubes.axis[i].x};
-                axis_yz[i] = {tubes.axis[i].y, tubes.axis[i].z};
-            }
-            mesh.update_uvs(weight_and_axis_x);
-            mesh.update_picture_uvs(axis_yz);
-            mesh.update_normals(tubes.offset_mm);
-        }
-    }
-    std::shared_ptr<const Vessel> vessel;  ///< known by its address, which thus stays its own
-    gl::Mesh mesh;
-    std::uint64_t host_version = 0;
-};
 
 GeometryEffect::GeometryEffect(Outputs outputs) : outputs_(outputs) {
     list_variants();

@@ -10,6 +10,8 @@
 
 namespace viscera::contrast {
 
+struct GpuVessel;
+
 /// How the densest of the fragments that cover a pixel is found.
 enum class OverlapMethod {
     max,        ///< maximum blending: in any order, with early tests
@@ -60,7 +62,6 @@ class GeometryEffect final : public Effect {
     void draw(const Pass& pass) override;
 
   private:
-    struct GpuVessel;
     enum class Scalar { none, density, arrival, arrival_table };
     struct Variant {
         Scalar scalar = Scalar::none;
