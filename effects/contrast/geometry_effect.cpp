@@ -350,7 +350,8 @@ void GeometryEffect::draw(const Pass& pass) {
     if (variant_.thickness) {
         const View& view = pass.frame().eye();
         program.set("u_eye", view.orthographic ? glm::vec4(-view.forward, 0.0) : glm::vec4(view.eye_mm, 1.0));
-        program.set("u_inv_calibre", static_cast<float>(1.0 / params_.vessel.full_calibre_mm));
+        program.set("u_inv_calibre",
+                    static_cast<float>(std::min(1.0 / params_.vessel.full_calibre_mm, 1e30)));
     }
     program.set("u_time_since_start", static_cast<float>(since_start_s_));
     program.set("u_injection_point", glm::vec3(cloud_centre()));

@@ -48,7 +48,10 @@ void main() {
 #endif
     o_main = u_tone * density * contrast_opacity(density);
 #ifdef THICKNESS
+    // Nothing shines through so much, and hundreds of such walls add up to a number that a half float holds.
+    const float opaque = 64.0;
     o_main *= abs(v_half_way) * u_inv_calibre;
+    o_main = o_main >= 0.0 ? min(o_main, opaque) : 0.0;  // 0 where it is no number
 #endif
 #ifdef DEPTH
     // The density itself with a GREATER test, not 1 - density with LESS: near 0 a float keeps the small differences that

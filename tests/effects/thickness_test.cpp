@@ -60,7 +60,7 @@ class Thickness : public testing::Test {
     }
 
     /// contrast.main on the plateau, seen along +y turned by `tilt_deg` towards z.
-    Image picture(double tilt_deg = 0.0) {
+    Image picture(double tilt_deg = 0.0, double full_calibre_mm = calibre_mm) {
         std::ofstream ply(folder_ / "cylinders.ply");
         ply << "ply\nformat ascii 1.0\nelement vertex " << points_.size()
             << "\nproperty double x\nproperty double y\nproperty double z\nelement face " << faces_.size()
@@ -82,7 +82,7 @@ class Thickness : public testing::Test {
             {"vessel",
              {{"mesh", (folder_ / "cylinders.ply").string()},
               {"centreline", line.string()},
-              {"full_calibre_mm", calibre_mm},
+              {"full_calibre_mm", full_calibre_mm},
               {"flow", {{"inlets", inlets_}, {"outlets", outlets_}, {"injection_speed_mm_s", 1000}}}}},
             {"bolus", {{"rise_s", 0.1}, {"duration_s", 100}}},
             {"method", "thickness"}};
@@ -157,6 +157,16 @@ TEST_F(Thickness, DoesNotLookHowTrianglesAreWound) {
             ASSERT_NEAR(outward.at(x, y, 0), inward.at(x, y, 0), 2e-6F);
         }
     }
+}
+
+TEST_F(Thickness, StaysFiniteWhateverTheCalibre) {
+    add_cylinder(0.0);
+    for (const double tiny : {1e-300, 1e-5}) {
+        const std::vector<float> values = to_floats(picture(0.0, tiny));
+        EXPECT_TRUE(std::ranges::all_of(values, [](float v) { return v >= 0.0F && v <= 128.0F; }));
+        EXPECT_EQ(std::ranges::max(values), 128.0F) << "two walls";
+    }
+    EXPECT_EQ(std::ranges::max(to_floats(picture(0.0, 1e300))), 0.0F);
 }
 
 TEST_F(Thickness, NeedsRadiiAndATargetOfItsOwn) {
