@@ -221,6 +221,24 @@ TEST_F(Skip, WhatNoOutputNeedsIsCulled) {
     expect_cold(without, 0.7);
 }
 
+TEST_F(Skip, TheCloudsOwnPassIsDrawnWhereTheCloudIs) {
+    json parameters = tube_parameters();
+    parameters["cloud"]["radius_mm"] = 6;
+    json scene = chain(parameters);
+    pass_in(scene, "vessels")["effect"] = "contrast.main";
+    scene["passes"].insert(scene["passes"].begin() + 2, pass("cloud", "contrast.cloud", parameters));
+    stage_.load(scene);
+    render(0.7);
+    expect("cloud", PassStatus::reduced, "only where the cloud can be seen");
+    expect_cold(chain(parameters), 0.7);
+    pass_in(scene, "cloud")["parameters"]["cloud"]["centre_mm"] = {0, 0, 400};
+    stage_.load(scene);
+    render(0.7);
+    expect("cloud", PassStatus::idle, "the cloud lies outside the view");
+    parameters["cloud"]["brightness"] = 0;
+    expect_cold(chain(parameters), 0.7);
+}
+
 /// A later pass draws the vessels, so that of one pass's three pictures nobody reads the first.
 TEST_F(Skip, OfSeveralPicturesThoseThatAreReadAreDrawn) {
     json scene = chain();
