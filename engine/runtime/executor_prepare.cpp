@@ -19,6 +19,37 @@ glm::ivec2 target_size(const Plan& plan, const PlanPass& pass) {
     return {0, 0};
 }
 
+/// Throws Error(usage) unless a lent texture is what its host says: a size that is not its own would be read
+/// beside the texture.
+void check_import(const gl::Functions& gl, const ImportedTexture& lent) {
+    const auto refuse = [&](const std::string& why) {
+        throw Error(ErrorCode::usage, lent.target,
+                    "the imported texture " + std::to_string(lent.texture) + " " + why);
+    };
+    if (lent.texture == 0 || gl.IsTexture(lent.texture) == GL_FALSE) {
+        refuse("does not exist in this context");
+    }
+    gl.ActiveTexture(GL_TEXTURE0 + gl::editing_unit);
+    gl.BindTexture(GL_TEXTURE_2D, lent.texture);
+    if (gl::drain_errors(gl) != GL_NO_ERROR) {
+        refuse("is not a 2-D texture");
+    }
+    const auto ask = [&](GLenum what) {
+        GLint value = 0;
+        gl.GetTexLevelParameteriv(GL_TEXTURE_2D, 0, what, &value);
+        return value;
+    };
+    const int width = ask(GL_TEXTURE_WIDTH);
+    const int height = ask(GL_TEXTURE_HEIGHT);
+    if (width != lent.width || height != lent.height) {
+        const auto size = [](int w, int h) { return std::to_string(w) + " x " + std::to_string(h); };
+        refuse("is " + size(width, height) + ", not " + size(lent.width, lent.height));
+    }
+    if ((ask(GL_TEXTURE_DEPTH_SIZE) > 0) != info(lent.format).is_depth) {
+        refuse(info(lent.format).is_depth ? "holds no depth" : "holds depth, not colour");
+    }
+}
+
 /// What only a frame shows of a scene's faults (a size, a picture that does not fit) is said by effects with
 /// their parameters; which pass it is, only the executor knows.
 Work prepare_work(Effect& effect, Prepare& view, const std::string& pass) {
@@ -94,11 +125,7 @@ void Executor::import(const Frame& frame) {
     imported_keys_.clear();
     for (const ImportedTarget& target : imported_) {
         const auto found = std::ranges::find(frame.imported, target.name, &ImportedTexture::target);
-        if (found->texture == 0 || shared_.gl.IsTexture(found->texture) == GL_FALSE) {
-            throw Error(
-                ErrorCode::usage, target.name,
-                "the imported texture " + std::to_string(found->texture) + " does not exist in this context");
-        }
+        check_import(shared_.gl, *found);
         // A host may have deleted a texture and made another of the same name, which no framebuffer made
         // before then holds.
         if (target.writable) {

@@ -37,7 +37,9 @@ class HostValues {
     std::map<std::string, Entry, std::less<>> entries_;
 };
 
-/// A texture of the host that stands for a target of the scene. It is never deleted by viscera.
+/// A texture of the host that stands for a target of the scene. It is never deleted by viscera. Frames with
+/// one that is no 2-D texture, of another size, or depth where colour is said (or the other way round) are
+/// refused.
 struct ImportedTexture {
     std::string target;
     unsigned texture = 0;  ///< OpenGL name of a GL_TEXTURE_2D

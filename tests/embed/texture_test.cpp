@@ -1,3 +1,5 @@
+#include <gmock/gmock.h>
+
 #include "engine/gl/pixel_transfer.h"
 #include "tests/embed/embed_test.h"
 #include "tests/embed/recorder.h"
@@ -134,6 +136,33 @@ TEST_P(Exchanged, ATextureThatIsNoneIsRefused) {
     frame.imported = good.textures();
     renderer.render(frame);
     EXPECT_EQ(corner(renderer), 0.75F);
+}
+
+TEST_P(Exchanged, ATextureThatIsNotWhatTheHostSaysIsRefused) {
+    Renderer renderer = make_renderer();
+    renderer.set_scene(without_background(world()), ImportedBackground::expected());
+    const gl::Texture small = grey(gl(), 0.5F, 16, 32);
+    const gl::Texture depth = gl::Texture::make_2d(gl(), 32, 32, PixelFormat::depth32f, "depth");
+    const gl::Texture deep =
+        gl::Texture::make_3d(gl(), {32, 32, 1}, gl::texture_format(PixelFormat::r16f), "deep");
+    const auto refusal = [&](const gl::Texture& texture) {
+        const ImportedTexture imported{.target = "background",
+                                       .texture = texture.id(),
+                                       .format = PixelFormat::r16f,
+                                       .width = 32,
+                                       .height = 32};
+        Frame frame = renderer.still(World::time_s);
+        frame.imported = std::span(&imported, 1);
+        std::string text;
+        expect_untouched("another texture", [&] {
+            const auto error = error_of([&] { renderer.render(frame); });
+            text = error && error->code() == ErrorCode::usage ? error->what() : "";
+        });
+        return text;
+    };
+    EXPECT_THAT(refusal(small), testing::HasSubstr("is 16 x 32, not 32 x 32"));
+    EXPECT_THAT(refusal(depth), testing::HasSubstr("holds depth, not colour"));
+    EXPECT_THAT(refusal(deep), testing::HasSubstr("is not a 2-D texture"));
 }
 
 TEST_P(Exchanged, AnImportThatDoesNotFitIsRefusedEveryTime) {
