@@ -266,8 +266,17 @@ Json describe_volume(const std::filesystem::path& file, Log& log) {
     throw Error(ErrorCode::file, file.string(), message);
 }
 
+/// Whether a JSON file is meant as a scene.
+bool is_scene(const std::filesystem::path& file) {
+    const Json root = Json::parse(read_file(file), nullptr, false);
+    return root.is_object() && root.contains("passes");
+}
+
 Json describe_geometry(const std::filesystem::path& file, Log& log) {
     const std::string extension = lower_extension(file);
+    if (extension == ".json" && is_scene(file)) {
+        throw Error(ErrorCode::file, file.string(), "is a scene: `viscera check` says what it draws");
+    }
     Json result = Json::object();
     if (extension == ".json" || (extension == ".vtp" && has_lines(file))) {
         result["kind"] = "centreline";

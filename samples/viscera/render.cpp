@@ -2,7 +2,6 @@
 #include <charconv>
 #include <chrono>
 #include <cmath>
-#include <fstream>
 #include <iomanip>
 #include <iostream>
 #include <mutex>
@@ -11,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/error.h"
+#include "engine/io/file_bytes.h"
 #include "engine/runtime/frame_writer.h"
 #include "engine/runtime/renderer.h"
 #include "samples/viscera/commands.h"
@@ -67,6 +67,15 @@ FrameRange parse_frames(const std::string& text) {
     return range;
 }
 
+/// A report that has no place to go is better known before hours of rendering than after.
+void check_report(const std::filesystem::path& report) {
+    const std::filesystem::path folder = report.has_parent_path() ? report.parent_path() : ".";
+    if (!report.empty() &&
+        (!std::filesystem::is_directory(folder) || std::filesystem::is_directory(report))) {
+        throw Error(ErrorCode::file, report.string(), "the report cannot be written there");
+    }
+}
+
 /// With --dump all every target is there; what else is not dumped is not written as PNG either.
 void check_png(const std::vector<std::string>& png, const DumpRequest& dump,
                const std::vector<std::string>& outputs) {
@@ -109,7 +118,11 @@ DumpRequest parse_dump(const std::string& text) {
     if (text == "all") {
         return {DumpRequest::Kind::all, {}};
     }
-    return {DumpRequest::Kind::names, split(text)};
+    DumpRequest dump{DumpRequest::Kind::names, split(text)};
+    if (dump.names.empty()) {
+        throw Error(ErrorCode::usage, "--dump", "names no target");
+    }
+    return dump;
 }
 
 io::ExrCompression parse_compression(const std::string& text) {
@@ -171,6 +184,7 @@ int render(const RenderArguments& arguments) {
     const FrameRange range = sequence ? parse_frames(arguments.frames) : FrameRange{};
     const DumpRequest dump = parse_dump(arguments.dump);
     const io::ExrCompression compression = parse_compression(arguments.compression);
+    check_report(arguments.report);
 
     const std::unique_ptr<Context> context = arguments.context.open();
     const Registry registry = make_registry();
@@ -236,11 +250,7 @@ int render(const RenderArguments& arguments) {
         document["faults"][key] = count;
     }
     if (!arguments.report.empty()) {
-        std::ofstream file(arguments.report);
-        file << document.dump(2) << '\n';
-        if (!file.flush()) {
-            throw Error(ErrorCode::file, arguments.report.string(), "cannot write the report");
-        }
+        io::write_file(arguments.report, document.dump(2) + '\n');
     }
     if (index < range.end) {
         throw Error(ErrorCode::usage, "render",
@@ -270,8 +280,10 @@ void add_render(CLI::App& app, int& exit_code) {
     command->add_option("--exr-compression", arguments->compression, "none, zips, zip, piz or dwaa");
     command->add_flag("--exr-multipart", arguments->multipart, "one file per frame with a part per target");
     command->add_option("--report", arguments->report, "writes what every pass and target did, as JSON");
-    command->add_option("--glsl", arguments->glsl,
-                        "reads shaders from this folder in place of those in the binary");
+    command
+        ->add_option("--glsl", arguments->glsl,
+                     "reads shaders from this folder in place of those in the binary")
+        ->check(CLI::ExistingDirectory);
     command->add_flag(
         "--no-run-up", arguments->no_run_up,
         "begins scenes that keep a state (energy, blood) at the first frame asked for, not at the "

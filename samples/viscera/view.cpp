@@ -303,7 +303,8 @@ void add_view(CLI::App& app, int& exit_code) {
     arguments->compute.add_to(*command);
     arguments->cache.add_to(*command);
     command->add_option("-o,--output", arguments->folder, "folder for pictures saved with S and E");
-    command->add_option("--glsl", arguments->glsl, "folder from which F reads shaders again");
+    command->add_option("--glsl", arguments->glsl, "folder from which F reads shaders again")
+        ->check(CLI::ExistingDirectory);
     command->add_option("--frame-time", arguments->frame_time_ms,
                         "[ms] that a frame with volumes may take while something moves; step and resolution "
                         "follow it");

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <regex>
 
 #include "engine/io/exr.h"
@@ -24,7 +25,10 @@ TEST_F(Command, WrongCommandLinesAreUsageErrors) {
                                                       {"render", path("scene.json"), "--time"},
                                                       {"render", path("scene.json"), "--time", "soon"},
                                                       {"diff", "a", "b", "--max", "-1"},
+                                                      {"diff", "a", "b", "--max", "nan"},
                                                       {"diff", "a", "b", "--fraction", "2"},
+                                                      {"render", path("scene.json"), "--dump", ""},
+                                                      {"render", path("scene.json"), "--glsl", path("no")},
                                                       {"render", path("scene.json"), "--time", "nan"},
                                                       {"render", path("scene.json"), "--png", "no.such"},
                                                       {"bench", "--set", "/camera/kind=c_arm", "cached"},
@@ -182,7 +186,23 @@ TEST_F(Diff, EqualPicturesPassAndDifferentOnesDoNot) {
     EXPECT_THAT(other.out, HasSubstr("max 0.25"));
     EXPECT_THAT(other.out, HasSubstr("worst at 1,2 channel 0"));
     EXPECT_EQ(viscera({"diff", a, picture("wide.exr", 0.5F, 5)}).code, 1);
-    EXPECT_EQ(viscera({"diff", a, picture("channels.exr", 0.5F, 4, PixelFormat::rgba32f)}).code, 1);
+    const std::string four = picture("channels.exr", 0.5F, 4, PixelFormat::rgba32f);
+    EXPECT_EQ(viscera({"diff", a, four, "--heatmap", path("none.png")}).code, 1);
+}
+
+TEST_F(Diff, PicturesOfOneFileAreHeldAgainstThoseOfTheirNames) {
+    const auto write = [&](const char* name, const char* first, const char* second) {
+        const Image image = make_image(4, 3, PixelFormat::r16f);
+        const std::array parts{io::ExrPart{.name = first, .image = image},
+                               io::ExrPart{.name = second, .image = image}};
+        io::write_exr(folder_ / name, parts);
+        return path(name);
+    };
+    const std::string ab = write("ab.EXR", "a", "b");
+    expect_fine(viscera({"diff", ab, write("same.exr", "a", "b")}));
+    const Ended other = viscera({"diff", ab, write("ac.exr", "a", "c")});
+    EXPECT_EQ(other.code, 1);
+    EXPECT_THAT(other.out, HasSubstr("'b' stands against 'c'"));
 }
 
 TEST_F(Diff, LimitsLetPassWhatTheySay) {
@@ -261,6 +281,7 @@ TEST_F(Info, BadFilesAreFileErrors) {
     for (const char* name : {"torn.glb", "lies.ply", "empty.stl", "noise.exr", "what.xyz", "none.glb", "."}) {
         expect_refused(viscera({"info", path(name)}), 4, name);
     }
+    expect_refused(viscera({"info", path("scene.json")}), 4, "is a scene");
 }
 
 class Schema : public testing::Test {

@@ -222,6 +222,7 @@ TEST_F(Render, FilesThatCannotBeReadOrWrittenAreNamed) {
     const Ended ended = render({"--report", path("none/report.json")});
     EXPECT_EQ(ended.code, 4);
     EXPECT_THAT(ended.err, HasSubstr("none/report.json"));
+    EXPECT_THAT(files(), testing::IsEmpty()) << "said before anything is drawn";
     scene_["passes"][0]["parameters"]["vessel"]["mesh"] = "gone.glb";
     write_scene(scene_);
     expect_refused(render(), 4, "gone.glb");
