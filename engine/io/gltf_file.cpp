@@ -1,5 +1,6 @@
 #include "engine/io/gltf_file.h"
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <stdexcept>
@@ -183,6 +184,22 @@ Json geometry_of(const Json& document) {
     return geometry;
 }
 
+/// How often `key` stands in the objects of a list; what is no list of objects is refused elsewhere.
+std::size_t count_key(const Json& list, const char* key) {
+    return static_cast<std::size_t>(std::ranges::count_if(
+        list, [&](const Json& item) { return item.is_object() && item.contains(key); }));
+}
+
+std::size_t count_poses(const Json& document) {
+    std::size_t count = count_key(document.value("nodes", Json::array()), "skin");
+    for (const Json& mesh : document.value("meshes", Json::array())) {
+        if (mesh.is_object()) {
+            count += count_key(mesh.value("primitives", Json::array()), "targets");
+        }
+    }
+    return count;
+}
+
 /// Extras and extensions are of no use here and may be nested as deep as their author liked.
 void strip_extras(Json& value) {
     if (value.is_object()) {
@@ -210,7 +227,7 @@ GltfFile read_gltf_file(const std::filesystem::path& file) {
             throw std::runtime_error("/asset/version: '" + version.substr(0, 20) + "', but 2.x is read");
         }
         check_extensions(document);
-        GltfFile gltf{geometry_of(document), {}};
+        GltfFile gltf{geometry_of(document), {}, count_poses(document)};
         strip_extras(gltf.document);
         gltf.buffers = load_buffers(gltf.document, std::move(container.binary), file);
         std::vector<std::size_t> sizes;

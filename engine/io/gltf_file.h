@@ -14,6 +14,7 @@ struct GltfFile {
     /// uri of buffer i is "i".
     nlohmann::json document;
     std::vector<std::string> buffers;  ///< the bytes of each buffer, byteLength of them
+    std::size_t posed = 0;  ///< nodes with a skin and primitives with morph targets: their poses are left out
 };
 
 /// Reads .gltf or .glb (told apart by content) with its buffers: the binary chunk, data URIs, and files

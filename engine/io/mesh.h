@@ -19,8 +19,8 @@ struct MeshOptions {
 
 /// Reads a surface mesh: .gltf, .glb, .stl, .obj, .ply or .vtp. Positions come in mm in the file's own axes,
 /// with node transforms applied; polygons (taken as convex) and strips are split into triangles; STL vertices
-/// at one place are joined. Normals that the file does not give (or gives as zero) are computed. A glTF node
-/// is one mesh, its
+/// at one place are joined. glTF's skins and morph targets are left out, and that is said. Normals that the
+/// file does not give (or gives as zero) are computed. A glTF node is one mesh, its
 /// `_NAME` scalars, the point data of VTP and further vertex properties of PLY come as
 /// VertexScalars.
 /// Triangles that are degenerate, out of range or not finite are counted with Log::fault and dropped,

@@ -40,8 +40,13 @@ tinygltf::FsCallbacks memory_callbacks(std::vector<std::string>& buffers) {
     return callbacks;
 }
 
-tinygltf::Model load_model(const std::filesystem::path& file) {
+tinygltf::Model load_model(const std::filesystem::path& file, Log& log) {
     GltfFile checked = read_gltf_file(file);
+    if (checked.posed > 0) {
+        log.fault("mesh: skins and morph targets left out",
+                  file.string() + ": skins and morph targets left out: the mesh is as it is without them",
+                  checked.posed);
+    }
     const std::string text = checked.document.dump();
     tinygltf::Model model;
     tinygltf::TinyGLTF loader;
@@ -335,7 +340,7 @@ class Scene {
 }  // namespace
 
 std::vector<RawMesh> read_gltf(const std::filesystem::path& file, Log& log) {
-    const tinygltf::Model model = load_model(file);
+    const tinygltf::Model model = load_model(file, log);
     return Scene(model, file, log).read();
 }
 

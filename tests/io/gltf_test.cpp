@@ -164,6 +164,20 @@ TEST_F(Gltf, PointsAndLinesAreLeftOutAndSaid) {
     EXPECT_EQ(log_.faults().at("mesh: points and lines left out"), 1U);
 }
 
+TEST_F(Gltf, SkinsAndMorphTargetsAreLeftOutAndSaid) {
+    const MeshData plain = load(test::tetra_json()).at(0);
+    EXPECT_TRUE(log_.faults().empty());
+    const std::string skinned = replaced(test::tetra_json(), R"("mesh":0)", R"("mesh":0,"skin":0)");
+    EXPECT_EQ(load(replaced(skinned, R"("indices":1)", R"("indices":1,"targets":[{"POSITION":0}])"))
+                  .at(0)
+                  .positions,
+              plain.positions);
+    EXPECT_EQ(log_.faults().at("mesh: skins and morph targets left out"), 2U);
+    EXPECT_THAT(refusal(R"("indices":1)", R"("indices":1,"targets":7)"), "accepted");
+    EXPECT_NE(refusal(R"({"asset":{"version":"2.0"},"nodes":{"skin":1},"meshes":[7,{"primitives":3}]})"),
+              "accepted");
+}
+
 TEST_F(Gltf, LyingReferencesAreRefusedByPointer) {
     EXPECT_THAT(refusal(R"("POSITION":0)", R"("POSITION":7)"),
                 HasSubstr("/meshes/0/primitives/0/attributes/POSITION"));
