@@ -77,7 +77,7 @@ class Reader {
                 byte = ~byte;
             }
         }
-        return picture;
+        return has_palette() ? with_colours(picture) : picture;
     }
 
   private:
@@ -86,6 +86,32 @@ class Reader {
         T value{};
         TIFFGetFieldDefaulted(tiff_.get(), tag, &value);
         return value;
+    }
+
+    [[nodiscard]] bool has_palette() const {
+        return field<std::uint16_t>(TIFFTAG_PHOTOMETRIC) == PHOTOMETRIC_PALETTE;
+    }
+
+    /// The colours that the numbers of a palette stand for.
+    [[nodiscard]] TiffPicture with_colours(const TiffPicture& numbers) const {
+        constexpr std::size_t entries = 256;
+        std::array<const std::uint16_t*, 3> palette{};
+        if (TIFFGetField(tiff_.get(), TIFFTAG_COLORMAP, &palette[0], &palette[1], &palette[2]) == 0) {
+            fail("has a palette without colours");
+        }
+        // Colours have 16 bits; some programs write those of 8 bits as they are.
+        const bool narrow = std::ranges::all_of(palette, [](const std::uint16_t* channel) {
+            return std::ranges::max(std::span(channel, entries)) < 256;
+        });
+        TiffPicture picture{numbers.width, numbers.height, 8, 3, {}};
+        picture.bytes.reserve(3 * numbers.bytes.size());
+        for (const std::byte number : numbers.bytes) {
+            for (const std::uint16_t* channel : palette) {
+                const unsigned colour = channel[std::to_integer<std::size_t>(number)];
+                picture.bytes.push_back(static_cast<std::byte>(narrow ? colour : colour >> 8U));
+            }
+        }
+        return picture;
     }
 
     /// A rectangle of the picture [pixels].
@@ -167,8 +193,8 @@ class Reader {
             field<std::uint16_t>(TIFFTAG_SAMPLEFORMAT) != SAMPLEFORMAT_UINT) {
             fail("has pixels that are not read: 1 to 4 unsigned channels of 8 or 16 bits are");
         }
-        if (field<std::uint16_t>(TIFFTAG_PHOTOMETRIC) == PHOTOMETRIC_PALETTE) {
-            fail("has a palette, which is not read");
+        if (has_palette() && (picture.bits != 8 || picture.channels != 1)) {
+            fail("has a palette that is not read: one of 256 colours is");
         }
     }
 

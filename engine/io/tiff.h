@@ -15,8 +15,8 @@ struct TiffPicture {
     std::vector<std::byte> bytes;
 };
 
-/// Rows or tiles, channels beside each other or apart. Throws Error(file) for a missing or damaged file,
-/// palettes, and other sample formats.
+/// Rows or tiles, channels beside each other or apart; a palette of 256 colours becomes these. Throws
+/// Error(file) for a missing or damaged file and for other sample formats.
 [[nodiscard]] TiffPicture read_tiff(const std::filesystem::path& file);
 
 }  // namespace viscera::io

@@ -113,6 +113,47 @@ TEST(VolumeTiff, EveryLayoutHoldsTheSamePicture) {
     }
 }
 
+/// Four pixels with the numbers 0, 1, 2, 255.
+void write_palette(const std::filesystem::path& file, const std::array<std::uint16_t, 3>& last,
+                   unsigned step) {
+    std::array<std::array<std::uint16_t, 256>, 3> palette{};
+    for (std::size_t c = 0; c < 3; ++c) {
+        palette[c][1] = static_cast<std::uint16_t>(10 * step);
+        palette[c][2] = static_cast<std::uint16_t>(20 * step);
+        palette[c][255] = static_cast<std::uint16_t>(last[c] * step);
+    }
+    TIFF* tiff = TIFFOpen(file.c_str(), "w");
+    TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, 4);
+    TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, 1);
+    TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 8);
+    TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, 1);
+    TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_PALETTE);
+    TIFFSetField(tiff, TIFFTAG_COLORMAP, palette[0].data(), palette[1].data(), palette[2].data());
+    std::array<std::uint8_t, 4> row{0, 1, 2, 255};
+    ASSERT_EQ(TIFFWriteScanline(tiff, row.data(), 0, 0), 1);
+    TIFFClose(tiff);
+}
+
+TEST(VolumeTiff, APaletteBecomesItsColours) {
+    for (const unsigned step : {1U, 256U, 257U}) {  // as 8 bits, and two ways to 16
+        SCOPED_TRACE(step);
+        const TempFolder folder;
+        Log log;
+        write_palette(folder / "a.tif", {250, 100, 50}, step);
+        const Volume coloured = load_volume(folder.path(), {}, log);
+        ASSERT_EQ(coloured.grid.dims, glm::ivec3(4, 1, 1));
+        ASSERT_EQ(coloured.channels, 3);
+        EXPECT_EQ(coloured.stored({0, 0, 0}, 2), 0.0);
+        EXPECT_EQ(coloured.stored({2, 0, 0}, 1), 20.0);
+        EXPECT_EQ(coloured.stored({3, 0, 0}, 0), 250.0);
+        EXPECT_EQ(coloured.stored({3, 0, 0}, 2), 50.0);
+        write_palette(folder / "a.tif", {90, 90, 90}, step);
+        const Volume grey = load_volume(folder.path(), {}, log);
+        ASSERT_EQ(grey.channels, 1);
+        EXPECT_EQ(grey.stored({3, 0, 0}, 0), 90.0);
+    }
+}
+
 /// Cut short, or with other bytes: a sound volume or an error that names the folder.
 TEST(VolumeTiff, DamagedTilesAreSurvived) {
     const TempFolder folder;
