@@ -25,12 +25,7 @@ constexpr gl::RasterState mark_state = [] {
     state.program_point_size = true;
     return state;
 }();
-// Those that are to be stepped, not those that show blood.
-constexpr gl::RasterState first_mark_state = [] {
-    gl::RasterState state = mark_state;
-    state.colour_mask = {true, false, false, false};
-    return state;
-}();
+// Where drops are, beside what the film does.
 constexpr gl::RasterState drop_mark_state = [] {
     gl::RasterState state = mark_state;
     state.colour_mask = {false, false, false, true};
@@ -47,13 +42,6 @@ std::array<gl::Framebuffer, 2> targets_of(const gl::Functions& gl, const std::ar
     return {gl::Framebuffer(gl, textures[0], label), gl::Framebuffer(gl, textures[1], label)};
 }
 
-std::array<gl::Framebuffer, 2> targets_of(const gl::Functions& gl, const gl::Texture& first,
-                                          const std::array<gl::Texture, 2>& second, const char* label) {
-    const std::array<const gl::Texture*, 2> even{&first, &second[0]};
-    const std::array<const gl::Texture*, 2> odd{&first, &second[1]};
-    return {gl::Framebuffer(gl, even, nullptr, label), gl::Framebuffer(gl, odd, nullptr, label)};
-}
-
 int divided_up(int a, int b) {
     return (a + b - 1) / b;
 }
@@ -65,6 +53,7 @@ BloodBlocks::BloodBlocks(const gl::Functions& gl, int size)
       size_(size),
       tiles_(divided_up(size, tile_side)),
       blocks_(divided_up(size, block_side)),
+      first_pair_(gl::Texture::make_2d(gl, blocks_, blocks_, PixelFormat::rg32f, "pairs of blocks")),
       surface_(gl::Texture::make_2d(gl, blocks_, blocks_, PixelFormat::r8, "blocks with a surface")),
       marks_(pair_of(gl, tiles_, PixelFormat::rg8, "tiles of blood")),
       across_(gl::Texture::make_2d(gl, tiles_, tiles_, PixelFormat::r8, "tiles of blood across seams")),
@@ -77,58 +66,91 @@ BloodBlocks::BloodBlocks(const gl::Functions& gl, int size)
       across_target_(gl, across_, "tiles of blood across seams"),
       reach_target_(gl, reach_, "tiles in reach of blood"),
       held_target_(targets_of(gl, held_, "blocks of blood")),
-      near_target_(targets_of(gl, near_, plan_, "blocks near blood")),
+      near_target_(gl, near_, "blocks near blood"),
       plan_target_(targets_of(gl, plan_, "blocks to be stepped")),
       stepped_target_(gl, stepped_, "blocks stepped"),
       answers_(gl) {}
 
-void BloodBlocks::pair(Pairs& pairs, std::span<const SeamLink> links, std::span<const SeamJump> jumps,
-                       int side, int beyond) const {
-    // The last number of a pair: how much a block must be in reach of blood, as blood_mark.vert.
+void BloodBlocks::pair_tiles(std::span<const SeamLink> links, std::span<const SeamJump> jumps) {
+    std::vector<std::array<int, 4>> found;
+    const auto add = [&](int a, int b) {
+        const std::array<int, 4> pair{a % size_ / tile_side, a / size_ / tile_side, b % size_ / tile_side,
+                                      b / size_ / tile_side};
+        // What flows one way must be seen from the other side as well.
+        found.push_back(pair);
+        found.push_back({pair[2], pair[3], pair[0], pair[1]});
+    };
+    for (const SeamLink& link : links) {
+        add(static_cast<int>(link.from), static_cast<int>(link.to));
+    }
+    for (const SeamJump& jump : jumps) {
+        add(jump.gutter, jump.to);
+    }
+    std::ranges::sort(found);
+    found.erase(std::ranges::unique(found).begin(), found.end());
+    std::vector<glm::vec4> pairs;
+    std::ranges::transform(found, std::back_inserter(pairs), [](const std::array<int, 4>& pair) {
+        return glm::vec4(pair[0], pair[1], pair[2], pair[3]);
+    });
+    tile_pair_count_ = static_cast<int>(pairs.size());
+    tile_pairs_.upload(*gl_, pairs, "tiles that seams join");
+}
+
+void BloodBlocks::pair_blocks(std::span<const SeamLink> links, std::span<const SeamJump> jumps) {
+    // How near blood must be to one block for the other to be stepped: as blood_across.frag.
     enum Least { stepped, holding, far };
-    std::vector<std::array<int, 5>> found;
-    const auto square = [&](int texel, int dx, int dy) {
-        return glm::clamp(glm::ivec2(texel % size_ + dx, texel / size_ + dy), 0, size_ - 1) / side;
+    std::vector<std::array<int, 3>> found;  // to, from, least
+    const auto block = [&](int texel, const glm::ivec2& off) {
+        const glm::ivec2 at =
+            glm::clamp(glm::ivec2(texel % size_, texel / size_) + off, 0, size_ - 1) / block_side;
+        return at.y * blocks_ + at.x;
     };
-    const auto add = [&](const glm::ivec2& from, const glm::ivec2& to, Least least) {
-        found.push_back({from.x, from.y, to.x, to.y, least});
+    const auto add = [&](int from, int to, Least least) {
+        if (from != to) {
+            found.push_back({to, from, least});
+        }
     };
-    const auto flow = [&](int from, int to) {
-        add(square(from, 0, 0), square(to, 0, 0), holding);
-        for (int i = 0; beyond > 0 && i < 9; ++i) {
-            const glm::ivec2 way = glm::ivec2(i % 3 - 1, i / 3 - 1) * beyond;
-            add(square(from, way.x, way.y), square(to, 0, 0), far);
-            add(square(from, 0, 0), square(to, way.x, way.y), far);
+    const auto flow = [&](int from, int to, bool towards) {
+        const int here = block(from, glm::ivec2(0));
+        const int there = block(to, glm::ivec2(0));
+        add(here, there, holding);
+        for (int i = 0; i < 9; ++i) {
+            const glm::ivec2 way = glm::ivec2(i % 3 - 1, i / 3 - 1) * past_seam;
+            add(here, block(to, way), far);
+            if (towards) {
+                add(block(from, way), there, far);
+            }
         }
     };
     for (const SeamLink& link : links) {
-        // What flows one way must be seen from the other side as well.
-        flow(static_cast<int>(link.from), static_cast<int>(link.to));
-        flow(static_cast<int>(link.to), static_cast<int>(link.from));
+        flow(static_cast<int>(link.from), static_cast<int>(link.to), true);
+        flow(static_cast<int>(link.to), static_cast<int>(link.from), true);
     }
     // A drop leaves blood where the gutter below it leads, and the gutter shows what is there.
     for (const SeamJump& jump : jumps) {
-        flow(jump.gutter, jump.to);
-        add(square(jump.to, 0, 0), square(jump.gutter, 0, 0), stepped);
+        flow(jump.gutter, jump.to, false);
+        add(block(jump.to, glm::ivec2(0)), block(jump.gutter, glm::ivec2(0)), stepped);
     }
     std::ranges::sort(found);
-    const auto same = [](const std::array<int, 5>& a, const std::array<int, 5>& b) {
-        return std::equal(a.begin(), a.begin() + 4, b.begin());
+    const auto same = [](const std::array<int, 3>& a, const std::array<int, 3>& b) {
+        return a[0] == b[0] && a[1] == b[1];
     };
     found.erase(std::ranges::unique(found, same).begin(), found.end());
-    std::vector<glm::vec4> texels;
-    std::ranges::transform(found, std::back_inserter(texels), [](const std::array<int, 5>& pair) {
-        return glm::vec4(pair[0], pair[1], pair[2], pair[3]) +
-               glm::vec4(0.0F, 0.0F, 0.0F, 0.25F * static_cast<float>(pair[4]));
-    });
-    pairs.count = static_cast<int>(found.size());
-    pairs.list.upload(*gl_, texels, "squares that seams join");
+    std::vector<glm::vec4> pairs;
+    std::vector<glm::vec2> first(static_cast<std::size_t>(blocks_) * static_cast<std::size_t>(blocks_));
+    for (const auto& [to, from, least] : found) {
+        glm::vec2& of_block = first[static_cast<std::size_t>(to)];
+        of_block = {of_block.y > 0.0F ? of_block.x : static_cast<float>(pairs.size()), of_block.y + 1.0F};
+        pairs.emplace_back(from % blocks_, from / blocks_, least, 0.0F);
+    }
+    block_pairs_.upload(*gl_, pairs, "blocks that seams join");
+    first_pair_.upload(std::as_bytes(std::span(first)));
 }
 
 void BloodBlocks::lie_on(const Image& position, std::span<const SeamLink> links,
                          std::span<const SeamJump> jumps) {
-    pair(tile_pairs_, links, jumps, tile_side, 0);
-    pair(block_pairs_, links, jumps, block_side, past_seam);
+    pair_tiles(links, jumps);
+    pair_blocks(links, jumps);
     const auto count = static_cast<std::size_t>(blocks_);
     std::vector<unsigned char> surface(count * count, 0);
     std::vector<unsigned char> cells(count * count, 0);
@@ -208,18 +230,13 @@ void BloodBlocks::mark_alive(const Pass& pass, const BloodMedium& medium, const 
     }
 }
 
-void BloodBlocks::mark_across(const Pass& pass, const gl::Program& program, const Pairs& pairs,
-                              const gl::Texture& marked) const {
-    bind(pass, program, "u_pairs", pairs.list.texture());
-    bind(pass, program, "u_marked", marked);
-    pass.draw_generated(GL_POINTS, pairs.count, 1);
-}
-
 void BloodBlocks::reach(const Pass& pass) const {
-    if (tile_pairs_.count > 0) {
+    if (tile_pair_count_ > 0) {
         const gl::Program& marks = use(pass, BloodShader::mark_of_tiles);
         draw_into(pass, across_target_, mark_state);
-        mark_across(pass, marks, tile_pairs_, marks_[now_]);
+        bind(pass, marks, "u_pairs", tile_pairs_.texture());
+        bind(pass, marks, "u_marked", marks_[now_]);
+        pass.draw_generated(GL_POINTS, tile_pair_count_, 1);
     }
     const gl::Program& program = use(pass, BloodShader::reach);
     bind(pass, program, "u_tiles", marks_[now_]);
@@ -234,14 +251,15 @@ void BloodBlocks::plan(const Pass& pass, const BloodMedium& medium, const Blood&
     bind(pass, program, "u_reach", reach_);
     bind(pass, program, "u_blocks", held_[now_]);
     bind(pass, program, "u_surface", surface_);
-    draw_into(pass, near_target_[now_], gl::overwrite_state);
+    draw_into(pass, near_target_, gl::overwrite_state);
     pass.draw_fullscreen();
-    if (block_pairs_.count > 0) {
-        const gl::Program& marks = use(pass, BloodShader::mark_of_blocks);
-        bind(pass, marks, "u_reach", reach_);
-        draw_into(pass, plan_target_[now_], first_mark_state);
-        mark_across(pass, marks, block_pairs_, near_);
-    }
+    const gl::Program& across = use(pass, BloodShader::across);
+    bind(pass, across, "u_near", near_);
+    bind(pass, across, "u_reach", reach_);
+    bind(pass, across, "u_first", first_pair_);
+    bind(pass, across, "u_pairs", block_pairs_.texture());
+    draw_into(pass, plan_target_[now_], gl::overwrite_state);
+    pass.draw_fullscreen();
     steps_planned_ = steps_per_plan;
 }
 

@@ -79,19 +79,12 @@ class BloodBlocks {
     [[nodiscard]] std::optional<std::uint64_t> all_still();
 
   private:
-    /// Squares that seams join, each pair once: x, y here, x, y across.
-    struct Pairs {
-        ListTexture list;
-        int count = 0;
-    };
     enum class Squares { tiles, blocks };
-    void pair(Pairs& pairs, std::span<const SeamLink> links, std::span<const SeamJump> jumps, int side,
-              int beyond) const;
+    void pair_tiles(std::span<const SeamLink> links, std::span<const SeamJump> jumps);
+    void pair_blocks(std::span<const SeamLink> links, std::span<const SeamJump> jumps);
     void mark(const Pass& pass, const BloodMedium& medium, const gl::Texture& drops, int first, int count,
               Squares squares) const;
     void mark_alive(const Pass& pass, const BloodMedium& medium, const Blood& blood, Squares squares) const;
-    void mark_across(const Pass& pass, const gl::Program& program, const Pairs& pairs,
-                     const gl::Texture& marked) const;
     void reach(const Pass& pass) const;
     void plan(const Pass& pass, const BloodMedium& medium, const Blood& blood);
     void draw(const Pass& pass, const gl::Program& program, int first, int last) const;
@@ -103,8 +96,10 @@ class BloodBlocks {
     ListTexture list_;  ///< see list()
     int listed_ = 0;
     int with_cells_ = 0;
-    Pairs tile_pairs_;
-    Pairs block_pairs_;
+    ListTexture tile_pairs_;  ///< that seams join: x, y here, x, y across
+    int tile_pair_count_ = 0;
+    ListTexture block_pairs_;  ///< by the block that is reached: see blood_across.frag
+    gl::Texture first_pair_;
     ListTexture expected_;
     int expected_count_ = 0;
     gl::Texture surface_;               ///< of blocks: there is one
@@ -119,7 +114,7 @@ class BloodBlocks {
     gl::Framebuffer across_target_;
     gl::Framebuffer reach_target_;
     std::array<gl::Framebuffer, 2> held_target_;
-    std::array<gl::Framebuffer, 2> near_target_;  ///< with the plan
+    gl::Framebuffer near_target_;
     std::array<gl::Framebuffer, 2> plan_target_;
     gl::Framebuffer stepped_target_;
     std::size_t now_ = 0;

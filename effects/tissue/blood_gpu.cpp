@@ -268,8 +268,8 @@ void BloodGpu::step_film(const Pass& pass, const BloodMedium& medium) const {
     const gl::Program& program =
         use(pass, tools ? (seams ? BloodShader::film_tools_seams : BloodShader::film_tools)
                         : (seams ? BloodShader::film_seams : BloodShader::film));
-    bind_place(pass, program);
-    pass.bind(program, "u_top", "flow_top");
+    bind(pass, program, "u_film", film());
+    bind(pass, program, "u_faces", ground_.faces());
     program.set("u_one", 1.0F);
     program.set("u_dries", tools || medium.flow.w > 0.0F);
     if (seams) {

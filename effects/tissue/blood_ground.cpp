@@ -11,14 +11,19 @@ namespace viscera::tissue {
 void BloodGround::take(const Pass& pass, const BloodBlocks& blocks, const gl::Texture& film,
                        const gl::Texture& place_of_cell) {
     constexpr int in_row = 16;  // as blood_ground.frag
+    constexpr int faces_of_block = 144;
     constexpr int texels = BloodBlocks::block_side * BloodBlocks::block_side;
     const int rows = std::max((blocks.count() + in_row - 1) / in_row, 1);
     if (!lengths_ || lengths_->height() != rows) {
         target_.reset();
+        faces_target_.reset();
         lengths_ = gl::Texture::make_2d(pass.gl(), in_row * texels, rows, PixelFormat::rg32f,
                                         "lengths of texels by blocks");
         across_ = gl::Texture::make_2d(pass.gl(), in_row * texels, rows, PixelFormat::r32f,
                                        "what lies across seams by blocks");
+        faces_ = gl::Texture::make_2d(pass.gl(), in_row * faces_of_block, rows, PixelFormat::rgba32f,
+                                      "faces by blocks");
+        faces_target_.emplace(pass.gl(), *faces_, "faces by blocks");
         const std::array<const gl::Texture*, 2> colours{&*lengths_, &*across_};
         target_.emplace(pass.gl(), colours, nullptr, "ground of blood by blocks");
     }
@@ -29,6 +34,12 @@ void BloodGround::take(const Pass& pass, const BloodBlocks& blocks, const gl::Te
     pass.bind(program, "u_metric", "metric");
     pass.bind(program, "u_right", "flow_right");
     draw_into(pass, *target_, gl::overwrite_state);
+    pass.draw_fullscreen();
+    const gl::Program& faces = use(pass, BloodShader::faces);
+    bind(pass, faces, "u_list", blocks.list());
+    pass.bind(faces, "u_right", "flow_right");
+    pass.bind(faces, "u_top", "flow_top");
+    draw_into(pass, *faces_target_, gl::overwrite_state);
     pass.draw_fullscreen();
 }
 

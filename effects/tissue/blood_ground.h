@@ -20,10 +20,15 @@ class BloodGround {
     /// Of gutters the cell across their seam, of cells their place among those at seams, or -1.
     [[nodiscard]] const gl::Texture& across() const { return *across_; }
 
+    /// What drives a film through the faces of cells: blood_faces.frag.
+    [[nodiscard]] const gl::Texture& faces() const { return *faces_; }
+
   private:
     std::optional<gl::Texture> lengths_;
     std::optional<gl::Texture> across_;
+    std::optional<gl::Texture> faces_;
     std::optional<gl::Framebuffer> target_;
+    std::optional<gl::Framebuffer> faces_target_;
 };
 
 }  // namespace viscera::tissue

@@ -10,6 +10,7 @@ std::vector<ProgramDesc> blood_programs() {
     return {{whole, "tissue/blood_start.frag", {}},
             {whole, "tissue/blood_start.frag", {"SPILL"}},
             {whole, "tissue/blood_ground.frag", {}},
+            {whole, "tissue/blood_faces.frag", {}},
             {whole, "tissue/blood_link.frag", {}},
             {whole, "tissue/blood_link.frag", {"RELIEF"}},
             {tile, "tissue/blood_film.frag", {"STEP"}},
@@ -29,7 +30,7 @@ std::vector<ProgramDesc> blood_programs() {
             {whole, "tissue/blood_near.frag", {}},
             {"tissue/blood_mark.vert", "tissue/blood_mark.frag", {}},
             {"tissue/blood_mark.vert", "tissue/blood_mark.frag", {"SEAMS"}},
-            {"tissue/blood_mark.vert", "tissue/blood_mark.frag", {"SEAMS", "BLOCKS"}},
+            {whole, "tissue/blood_across.frag", {}},
             {tile, "tissue/blood_copy.frag", {"SETTLED"}},
             {whole, "tissue/blood_copy.frag", {}},
             {"tissue/blood_cap.vert", "tissue/blood_cap.frag", {}}};

@@ -2,15 +2,14 @@
 #include "tissue/blood_common.glsl"
 #include "tissue/blood_relief.glsl"
 #include "tissue/blood_plan.glsl"
+#include "tissue/blood_on_ground.glsl"
 // One step of the film. The tiles that are drawn are those in which something can change.
 uniform sampler2D u_film;
-uniform sampler2D u_right;
-uniform sampler2D u_top;
+uniform sampler2D u_faces;  // of blood_faces.frag
 uniform float u_one;
 uniform bool u_dries;  // also where it stands
 #ifdef SEAMS
 #include "tissue/blood_gutter.glsl"
-#include "tissue/blood_ground.glsl"
 #include "tissue/list.glsl"
 uniform sampler2D u_across;         // of blood_ground.frag
 uniform sampler2D u_came;           // of blood_seam.frag
@@ -57,18 +56,17 @@ void main() {
     vec2 b = at(vec2(uv.x, low.y));
     vec2 t = at(vec2(uv.x, high.y));
     o_film = film;
-    vec4 face = textureLod(u_right, uv, 0.0);
     // Nothing flows where no height around is above the rest that stays.
     float highest = max(max(max(l.x, r.x), max(b.x, t.x)), c);
     bool flows = film.w > 0.0 && (highest > u_flow.y || film.y != 0.0 || (c > 0.0 && u_dries));
     if (flows) {
         ivec2 place = here & (block_side - 1);
-        vec4 right = shut(face, place.x == block_side - 1, v_steps.y, r);
-        vec4 top = shut(textureLod(u_top, uv, 0.0), place.y == block_side - 1, v_steps.w, t);
-        vec4 left = here.x > 0 ? textureLod(u_right, vec2(low.x, uv.y), 0.0) : vec4(0.0);
-        vec4 bottom = here.y > 0 ? textureLod(u_top, vec2(uv.x, low.y), 0.0) : vec4(0.0);
-        left = shut(left, place.x == 0, v_steps.x, l);
-        bottom = shut(bottom, place.y == 0, v_steps.z, b);
+        ivec2 right_face = right_on_ground(here);
+        ivec2 top_face = top_on_ground(here);
+        vec4 right = shut(texelFetch(u_faces, right_face, 0), place.x == block_side - 1, v_steps.y, r);
+        vec4 top = shut(texelFetch(u_faces, top_face, 0), place.y == block_side - 1, v_steps.w, t);
+        vec4 left = shut(texelFetch(u_faces, right_face - ivec2(1, 0), 0), place.x == 0, v_steps.x, l);
+        vec4 bottom = shut(texelFetch(u_faces, top_face - ivec2(8, 0), 0), place.y == 0, v_steps.z, b);
         vec2 lb = at(low);
         vec2 rb = at(vec2(high.x, low.y));
         vec2 lt = at(vec2(low.x, high.y));

@@ -1,6 +1,3 @@
-/// Where a texel of the block that is drawn lies in the textures of blood_ground.frag.
-flat in ivec2 v_ground;  // the block's first texel there
-
-ivec2 on_ground(ivec2 texel) {
-    return v_ground + ivec2((texel.x & 7) + ((texel.y & 7) << 3), 0);
-}
+// Textures of blood_ground.frag and blood_faces.frag: what belongs to a block lies side by side, 16 blocks in a row.
+const int right_faces = 72;  // 9 x 8
+const int faces_of_block = 144;

@@ -1,5 +1,5 @@
 #version 330 core
-#include "tissue/blood_ground.glsl"
+#include "tissue/blood_on_ground.glsl"
 #include "tissue/blood_gutter.glsl"
 #include "tissue/blood_relief.glsl"
 // A step of the film where no cells are: gutters show what lies across the seam.

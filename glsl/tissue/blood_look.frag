@@ -1,5 +1,5 @@
 #version 330 core
-#include "tissue/blood_ground.glsl"
+#include "tissue/blood_on_ground.glsl"
 // What is seen of the blood: its height, its colour, and the slope of its surface.
 uniform sampler2D u_relief;  // height [mm], -1 without a surface
 uniform sampler2D u_lengths;  // of blood_ground.frag

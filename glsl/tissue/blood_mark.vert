@@ -1,15 +1,12 @@
 #version 330 core
-// Marks tiles and blocks by points: those in which drops are, or those across seams from marked ones.
-#include "tissue/blood_held.glsl"
+// Marks by points the tiles and blocks in which drops are, or the tiles across seams from marked ones.
 #ifdef SEAMS
 #include "tissue/list.glsl"
-uniform sampler2D u_pairs;   // one side, other side: x, y each, of tiles or blocks that a seam joins; by quarters more: see least_of()
+uniform sampler2D u_pairs;   // one side, other side: x, y each, of tiles that a seam joins
 uniform sampler2D u_marked;
-#ifdef BLOCKS
-uniform sampler2D u_reach;  // of tiles: to be stepped
-#endif
 #else
 #include "tissue/blood_drop.glsl"
+#include "tissue/blood_held.glsl"
 uniform sampler2D u_drops;
 uniform sampler2D u_metric;
 uniform int u_first;
@@ -23,33 +20,19 @@ uniform float u_steps;  // until drops are marked again
 #endif
 flat out float v_mark;
 
-#ifdef BLOCKS
-/// How near blood must be to one block so that the other is stepped: gutters show all that is stepped across their seam, a film crosses
-/// it from where it lies, and goes on beyond if it runs far.
-float least_of(vec4 pair) {
-    float kind = 4.0 * fract(pair.w);
-    return kind < 0.5 ? may_come : kind < 1.5 ? lies_there : runs_far;
-}
-#endif
-
 void main() {
     gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
     gl_PointSize = 1.0;
     v_mark = 1.0;
 #ifdef SEAMS
     vec4 pair = list_item(u_pairs, gl_VertexID);
-#ifdef BLOCKS
-    bool comes = texelFetch(u_marked, ivec2(pair.xy), 0).r > least_of(pair) - 0.1;
-    float most = comes ? texelFetch(u_reach, ivec2(pair.zw) / 4, 0).r : 0.0;
-#else
     ivec2 last = textureSize(u_marked, 0) - 1;
     float most = 0.0;
     for (int i = 0; i < 9; ++i) {
         most = max(most, texelFetch(u_marked, clamp(ivec2(pair.xy) + ivec2(i % 3 - 1, i / 3 - 1), ivec2(0), last), 0).r);
     }
-#endif
     if (most > 0.5) {
-        gl_Position = vec4(2.0 * (floor(pair.zw) + 0.5) / vec2(textureSize(u_marked, 0)) - 1.0, 0.0, 1.0);
+        gl_Position = vec4(2.0 * (pair.zw + 0.5) / vec2(textureSize(u_marked, 0)) - 1.0, 0.0, 1.0);
     }
 #else
     ivec2 size = textureSize(u_drops, 0);

@@ -5,7 +5,6 @@ uniform sampler2D u_reach;    // of tiles: of blood_reach.frag
 uniform sampler2D u_blocks;   // see blood_held.glsl
 uniform sampler2D u_surface;  // r: there is a surface
 layout(location = 0) out vec2 o_near;  // r: see blood_held.glsl; g: to be shown
-layout(location = 1) out vec2 o_plan;  // the same, to which come those across seams
 
 void main() {
     ivec2 block = ivec2(gl_FragCoord.xy);
@@ -29,5 +28,4 @@ void main() {
     bool bare = texelFetch(u_surface, block, 0).r < 0.5;
     bool shows = shown > 0.5 || (near > 0.0 && reach.g > 0.5);
     o_near = bare ? vec2(0.0) : vec2(reach.r > 0.5 ? near : 0.0, shows);
-    o_plan = o_near;
 }

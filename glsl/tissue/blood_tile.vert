@@ -11,7 +11,7 @@ uniform sampler2D u_plan_before;
 uniform sampler2D u_stepped;  // r: stepped since the picture was drawn
 uniform bool u_whole;         // the picture holds nothing yet
 #endif
-flat out ivec2 v_ground;  // see blood_ground.glsl
+flat out ivec2 v_ground;  // see blood_on_ground.glsl
 #ifdef STEP
 flat out vec4 v_steps;  // whether the blocks to the left, to the right, below and above are stepped
 #endif
@@ -19,7 +19,7 @@ flat out vec4 v_steps;  // whether the blocks to the left, to the right, below a
 void main() {
     ivec2 blocks = textureSize(u_plan, 0);
     int number = u_first + gl_VertexID;
-    v_ground = ivec2((number & 15) << 6, number >> 4);
+    v_ground = ivec2(number & 15, number >> 4);
     ivec2 block = ivec2(list_item(u_list, number).xy);
     vec2 plan = texelFetch(u_plan, block, 0).rg;
 #ifdef SETTLED
