@@ -57,10 +57,12 @@ void GeometryParams::visit(ParamVisitor& v) {
              .unit = "s",
              .min = 0.0},
             delay_s);
-    v.field({.name = "method",
-             .doc = "How the densest fragment is found; depth and painter only in the pass that draws "
-                    "contrast.main alone."},
-            method);
+    v.field(
+        {.name = "method",
+         .doc = "max, depth and painter keep the densest fragment; thickness adds vessels up by the way of "
+                "the rays through them and needs a centreline and full_calibre_mm. All but max only in a "
+                "pass that draws contrast.main alone."},
+        method);
 }
 
 GeometryEffect::GeometryEffect(Outputs outputs) : outputs_(outputs) {

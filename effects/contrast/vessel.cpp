@@ -129,8 +129,8 @@ void VesselParams::visit(ParamVisitor& v) {
             centreline);
     v.field({.name = "full_calibre_mm",
              .doc = "With a centreline: vessels of this diameter or more show the bolus's whole density, "
-                    "thinner ones "
-                    "less in proportion, as the way of the rays through them shrinks; 0: all alike.",
+                    "thinner ones less in proportion, as the way of the rays through them shrinks; 0: all "
+                    "alike. By thickness: the way through contrast that shows as the density 1.",
              .unit = "mm",
              .min = 0.0},
             full_calibre_mm);

@@ -19,10 +19,10 @@ struct MeshOptions {
 
 /// Reads a surface mesh: .gltf, .glb, .stl, .obj, .ply or .vtp. Positions come in mm in the file's own axes,
 /// with node transforms applied; polygons (taken as convex) and strips are split into triangles; STL vertices
-/// at one place are joined. glTF's skins and morph targets are left out, and that is said. Normals that the
-/// file does not give (or gives as zero) are computed. A glTF node is one mesh, its
-/// `_NAME` scalars, the point data of VTP and further vertex properties of PLY come as
-/// VertexScalars.
+/// at one place are joined. Normals that the file does not give (or gives as zero) are computed. A glTF node
+/// or a solid of an STL text is one mesh; `_NAME` attributes of glTF, the point data of VTP and further
+/// vertex properties of PLY come as VertexScalars. glTF's skins and morph targets are left out, and the log
+/// says so.
 /// Triangles that are degenerate, out of range or not finite are counted with Log::fault and dropped,
 /// vertices that no triangle uses are left out; a mesh in which nothing is left is returned without triangles
 /// and the log says so. Throws Error(file) for a damaged or unknown file or where no name holds the filter,

@@ -5,6 +5,7 @@
 
 #include "engine/core/error.h"
 #include "engine/gl/debug.h"
+#include "engine/runtime/naming_pass.h"
 
 namespace viscera {
 namespace {
@@ -171,7 +172,7 @@ bool Executor::draw(std::size_t p) {
     const Pass view(shared_, frames_[state.frame], state.programs, state.inputs, state.outputs, target, size,
                     region, cleared.kept);
     view.raster(gl::overwrite_state);
-    state.effect->draw(view);
+    naming_pass(pass.name, [&] { state.effect->draw(view); });
     fill(target, cleared);
     if (state.timer) {
         state.timer->end();

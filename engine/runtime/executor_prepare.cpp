@@ -3,6 +3,7 @@
 #include "engine/core/error.h"
 #include "engine/core/hash.h"
 #include "engine/runtime/executor.h"
+#include "engine/runtime/naming_pass.h"
 
 // What a frame brings, and what each pass finds to do in it.
 namespace viscera {
@@ -47,19 +48,6 @@ void check_import(const gl::Functions& gl, const ImportedTexture& lent) {
     }
     if ((ask(GL_TEXTURE_DEPTH_SIZE) > 0) != info(lent.format).is_depth) {
         refuse(info(lent.format).is_depth ? "holds no depth" : "holds depth, not colour");
-    }
-}
-
-/// What only a frame shows of a scene's faults (a size, a picture that does not fit) is said by effects with
-/// their parameters; which pass it is, only the executor knows.
-Work prepare_work(Effect& effect, Prepare& view, const std::string& pass) {
-    try {
-        return effect.prepare(view);
-    } catch (const Error& error) {
-        if (error.code() != ErrorCode::scene) {
-            throw;
-        }
-        throw Error(error.code(), "pass '" + pass + "', " + error.where(), std::string(error.message()));
     }
 }
 
@@ -156,7 +144,7 @@ void Executor::prepare(FrameReport& report) {
         }
         const gl::CpuTimer timer;
         FramePrepare view(*this, frames_[state.frame], p);
-        state.work = prepare_work(*state.effect, view, pass.name);
+        state.work = naming_pass(pass.name, [&] { return state.effect->prepare(view); });
         // An effect may ask for more than there is.
         const glm::ivec2 size = target_size(plan_, pass);
         state.work.region = state.work.region.confined(size.x, size.y);

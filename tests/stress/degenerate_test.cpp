@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/io/exr.h"
 #include "tests/stress/stage.h"
 
 namespace viscera::test {
@@ -78,6 +79,25 @@ TEST_F(Degenerate, EmittersOnTheLineOfSightShowTheFront) {
     parameters(scene, 2)["emitters"] = json::array();
     add_emitter(scene, {0, 0, 10}, {1e-9, -5, 10}, {1e-9, -5, 10});
     EXPECT_EQ(largest(render(scene).at("contrast.reflux")), 0.0F) << "an edge on the tip: no front either";
+}
+
+TEST_F(Degenerate, ViewsOfOtherSizesAreRefusedByName) {
+    const io::ExrPart part{.name = "smoke", .image = make_image(8, 4, PixelFormat::r16f)};
+    io::write_exr(folder() / "small.exr", std::span(&part, 1));
+    json scene = chain();
+    parameters(scene, 2)["views"] = {{{"angle_deg", 30}, {"image", "smoke.exr"}}, {{"image", "small.exr"}}};
+    load(scene);
+    for (int frame = 0; frame < 2; ++frame) {
+        try {
+            (void)render(1.0);
+            ADD_FAILURE() << "drawn all the same";
+        } catch (const Error& error) {
+            EXPECT_EQ(error.code(), ErrorCode::scene);
+            EXPECT_THAT(error.what(), testing::HasSubstr("pass 'reflux', /views/1/image: "));
+            EXPECT_THAT(error.what(), testing::HasSubstr("small.exr has 8 x 4 pixels"));
+        }
+    }
+    EXPECT_GT(largest(render(chain()).at("contrast.reflux")), 0.1F) << "goes on";
 }
 
 TEST_F(Degenerate, DensityInTheFileIsMended) {
