@@ -213,7 +213,7 @@ std::vector<std::string> obj_seeds() {
             "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\ng a\nf 1/1/1 2/1/1 3//1\nf -1 -2 -3\n"};
 }
 std::vector<std::string> stl_seeds() {
-    return {test::tetra_stl(), test::tetra_stl_text()};
+    return {test::tetra_stl(), test::tetra_stl_text(), test::tetra_stl_text() + test::tetra_stl_text()};
 }
 std::vector<std::string> centreline_seeds() {
     return {R"({"unit":"mm","nodes":[[0,0,0,1],[0,0,9,2],[1,2,3,4]],"edges":[[0,1],[1,2]]})"};
