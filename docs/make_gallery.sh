@@ -28,7 +28,7 @@ picture washout final 'Wash-out: contrast has left the main stem, the muscle blu
 picture main contrast.main 'The vessels alone: `contrast.main`' $scene
 picture distance contrast.distance_view 'Distance map at the injection' $scene --set '/passes/-={"name":"map","effect":"contrast.distance","parameters":{"$ref":"#/shared/coronary"}}' --set '/passes/-={"name":"look","effect":"contrast.distance_view"}'
 picture reflux contrast.reflux 'Smoke that flows back into the aortic root: `contrast.reflux`' $scene
-picture lao final 'Another C-arm position, AP' $scene --set /camera/primary_deg=0 --set /camera/secondary_deg=0 --set /passes/0/parameters/file=../images/thorax.exr
+picture ap final 'Another C-arm position, AP' $scene --set /camera/primary_deg=0 --set /camera/secondary_deg=0 --set /passes/0/parameters/file=../images/thorax.exr
 picture thesis final 'The published tone curve, which jumps at half density' $scene --time 1.0 --set /passes/9/parameters/tone=thesis
 picture vessels final 'A bifurcation, from the scene for vessels of your own' assets/scenes/vessels.json
 picture head volume.colour 'CT of a head' assets/scenes/head.json

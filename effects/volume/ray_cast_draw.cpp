@@ -114,6 +114,9 @@ void RayCastEffect::draw(const Pass& pass) {
     const double value_offset = volume.value_of(map.offset);
     program.set("u_attenuation",
                 glm::vec2(glm::dvec2(mu * value_scale / 1000.0, mu * (1.0 + value_offset / 1000.0))));
+    const std::optional<FilmParams>& film = params_.xray.film;
+    program.set("u_film",
+                film ? glm::vec2(glm::dvec2(film->from, 1.0 / (film->to - film->from))) : glm::vec2(0.0F));
     program.set("u_intensity", glm::vec2(params_.xray.incident, params_.xray.negative ? 1.0 : 0.0));
     if (params_.threshold) {
         program.set("u_threshold", static_cast<float>(texel(*params_.threshold)));

@@ -35,6 +35,7 @@ void RayCastEffect::validate() const {
     }
     params_.look.validate();
     params_.accumulate.validate();
+    params_.xray.validate();
     check_colours();
     const ReconstructionParams& filter = params_.sampling.reconstruction;
     if (filter.keeps_gradients() &&

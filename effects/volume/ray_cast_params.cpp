@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "engine/core/error.h"
+
 namespace viscera::volume {
 namespace {
 
@@ -25,6 +27,12 @@ void CropParams::visit(ParamVisitor& v) {
             size);
 }
 
+void FilmParams::visit(ParamVisitor& v) {
+    v.field({.name = "from", .doc = "Line integral of attenuation up to which nothing counts as absorbed."},
+            from);
+    v.field({.name = "to", .doc = "Line integral from which on all counts as absorbed."}, to);
+}
+
 void XrayParams::visit(ParamVisitor& v) {
     v.field({.name = "water_attenuation_per_mm",
              .doc = "Attenuation of water; that of a voxel is this times 1 + HU / 1000, never below 0.",
@@ -34,6 +42,17 @@ void XrayParams::visit(ParamVisitor& v) {
     v.field({.name = "incident", .doc = "Intensity in front of the volume.", .min = 0.0, .max = 65504.0},
             incident);
     v.field({.name = "negative", .doc = "Shows what is absorbed as bright, as films do."}, negative);
+    v.field(
+        {.name = "film",
+         .doc = "Brightness goes by the line integral itself, over a range, as films and digital detectors "
+                "show it; without it by the intensity, which is next to nothing behind a head."},
+        film);
+}
+
+void XrayParams::validate() const {
+    if (film && !(film->from < film->to)) {
+        throw Error(ErrorCode::scene, "/xray/film", "'from' must be less than 'to'");
+    }
 }
 
 void SubVolumeParams::visit(ParamVisitor& v) {

@@ -27,12 +27,23 @@ struct CropParams {
     void visit(ParamVisitor& v);
 };
 
+/// How a film or a digital detector shows what it has received: by its logarithm, over a range.
+struct FilmParams {
+    double from = 0.0;  ///< optical depth that is shown as none
+    double to = 4.5;    ///< and as all absorbed, > from
+
+    void visit(ParamVisitor& v);
+};
+
 struct XrayParams {
     double water_attenuation_per_mm = 0.02;
     double incident = 1.0;
     bool negative = true;
+    std::optional<FilmParams> film;  ///< none: the intensity itself
 
     void visit(ParamVisitor& v);
+    /// Throws Error(scene).
+    void validate() const;
 };
 
 /// Only the first part of each ray: from where it starts, at a drawn surface (sampling.limits), a clip plane

@@ -2,6 +2,7 @@
 // PROJECTION: 0 maximum, 1 minimum, 2 average, 3 X-ray.
 uniform vec2 u_attenuation;     // texel value -> attenuation [1/mm]: x * value + y
 uniform float u_threshold;      // iso value: samples below it are dropped
+uniform vec2 u_film;            // optical depth that a film begins to show, and share of its range per depth; 0: no film
 uniform vec2 u_intensity;       // intensity without and share of brightness turned round: see finish
 
 struct State {
@@ -109,7 +110,8 @@ bool take_slab(inout State state, Slab slab) {
 // Extremes and means go through the transfer function once, without regard to length.
 vec4 finish(State state) {
 #if PROJECTION == 3
-    float intensity = u_intensity.x * exp(-state.value);
+    float through = u_film.y > 0.0 ? 1.0 - clamp((state.value - u_film.x) * u_film.y, 0.0, 1.0) : exp(-state.value);
+    float intensity = u_intensity.x * through;
     return vec4(vec3(mix(intensity, u_intensity.x - intensity, u_intensity.y)), 1.0);
 #else
 #if PROJECTION == 2

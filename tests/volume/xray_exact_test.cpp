@@ -1,9 +1,12 @@
 // X-rays of white noise against the exact integral of the trilinear field, and what they cost.
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <gtest/gtest.h>
 
+#include "tests/core/error_of.h"
 #include "tests/reference/volume_exact.h"
 #include "tests/volume/volume_stage.h"
 
@@ -99,6 +102,37 @@ TEST(XrayExact, WhiteNoiseIsTheExactTrilinearIntegral) {
         EXPECT_GT(seen, 400);
     }
     EXPECT_EQ(stage.stage().complaints(), std::vector<std::string>{});
+}
+
+TEST(XrayExact, AFilmShowsTheLineIntegralOverItsRange) {
+    const LiveVolume volume(noise());
+    VolumeStage stage(bare());
+    nlohmann::json p = parameters();
+    for (const bool negative : {false, true}) {
+        for (const auto& [from, to] : {std::pair(0.0, 3.0), std::pair(1.2, 2.2)}) {
+            p["xray"]["film"] = {{"from", from}, {"to", to}};
+            p["xray"]["negative"] = negative;
+            p["xray"]["incident"] = 2.0;
+            const Shot shot = stage.cast(volume, p, looks[0], glm::ivec2(48));
+            int between = 0;
+            for (int y = 0; y < shot.image.height; ++y) {
+                for (int x = 0; x < shot.image.width; ++x) {
+                    if (shot.at(x, y) == glm::dvec4(0.0)) {
+                        continue;  // beside the volume
+                    }
+                    const double absorbed = std::clamp((shot.at(x, y).x - from) / (to - from), 0.0, 1.0);
+                    ASSERT_NEAR(shot.at(x, y).y, 2.0 * (negative ? absorbed : 1.0 - absorbed), 2e-6);
+                    between += absorbed > 0.0 && absorbed < 1.0 ? 1 : 0;
+                }
+            }
+            EXPECT_GT(between, 100);
+        }
+    }
+    EXPECT_EQ(stage.stage().complaints(), std::vector<std::string>{});
+    p["xray"]["film"] = {{"from", 2.0}, {"to", 2.0}};
+    const auto error = error_of([&] { (void)stage.cast(volume, p, looks[0], glm::ivec2(4)); });
+    ASSERT_TRUE(error);
+    EXPECT_NE(std::string(error->what()).find("/xray/film"), std::string::npos) << error->what();
 }
 
 TEST(XrayExact, TakesAtMostFourSamplesPerVoxelOfPath) {
