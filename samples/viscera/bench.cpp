@@ -105,7 +105,7 @@ void add_bench(CLI::App& app, int& exit_code) {
     CLI::App* command = app.add_subcommand(
         "bench", "Measures the machine's ceilings, then time and error of each part as ratios to them");
     const auto arguments = std::make_shared<BenchArguments>();
-    command->add_option("CASE", arguments->cases, "cases to run; none: all of them");
+    command->add_option("CASE", arguments->cases, "cases to run; none: all of them")->default_str("");
     arguments->context.add_to(*command);
     arguments->compute.add_to(*command);
     command->add_option("--resolution", arguments->resolution, "WxH");
@@ -120,6 +120,7 @@ void add_bench(CLI::App& app, int& exit_code) {
                      "/json/pointer=value: changes --scene before it is read; may be given many times")
         ->take_all()
         ->allow_extra_args(false)
+        ->default_str("")
         ->needs(scene);
     command
         ->add_option("--pixels", arguments->pixels,

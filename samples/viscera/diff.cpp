@@ -97,7 +97,8 @@ void add_diff(CLI::App& app, int& exit_code) {
     command->add_option("--max", arguments->limits.max, "largest absolute difference let pass")
         ->check(not_negative);
     command->add_option("--mean", arguments->limits.mean, "mean absolute difference let pass; default: --max")
-        ->check(not_negative);
+        ->check(not_negative)
+        ->default_str("");
     command->add_option("--fraction", arguments->limits.fraction, "share of pixels that may exceed --max")
         ->check(CLI::Range(0.0, 1.0));
     command->add_option("--heatmap", arguments->heatmap, "writes where they differ as PNG");

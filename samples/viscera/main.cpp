@@ -36,6 +36,7 @@ int run(int argc, char** argv) {
         "viscera"};
     app.require_subcommand(1);
     app.set_version_flag("--version", VISCERA_VERSION);
+    app.option_defaults()->always_capture_default();  // --help tells them
     int exit_code = EXIT_SUCCESS;
     for (const auto add : {viscera::app::add_render, viscera::app::add_view, viscera::app::add_check,
                            viscera::app::add_diff, viscera::app::add_info, viscera::app::add_bench,

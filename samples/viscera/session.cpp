@@ -115,7 +115,8 @@ void SceneArguments::add_to(CLI::App& command) {
         .add_option("--set", overrides,
                     "/json/pointer=value: changes the scene before it is read; may be given many times")
         ->take_all()
-        ->allow_extra_args(false);
+        ->allow_extra_args(false)
+        ->default_str("");
     command.add_option("--resolution", resolution, "WxH in place of the scene's");
 }
 

@@ -54,6 +54,7 @@ TEST_F(Command, HelpAndVersionAreNoErrors) {
         EXPECT_FALSE(ended.out.empty());
         EXPECT_EQ(ended.err, "");
     }
+    EXPECT_THAT(viscera({"render", "--help"}).out, HasSubstr("--output TEXT=out")) << "defaults are told";
 }
 
 TEST_F(Command, CheckPrintsThePlanWithReasons) {
