@@ -115,6 +115,20 @@ TEST_P(PictureAccuracy, GaussianOfTwoDirections) {
     }
 }
 
+TEST_P(PictureAccuracy, GaussianOfAPictureOfAnotherSize) {
+    render({NoisePictures::fill("filter.source", pictures_.noise(9, width, height)),
+            pass("x", "filter.gaussian", {{"sigma", 0.0}, {"gain", 0.9}})},
+           {"filter.blurred", "filter.source"}, {{"filter.source", {{"scale", 0.5}}}});
+    const Buffer source = read("filter.source");
+    Buffer wanted(width, height);
+    for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x) {
+            wanted.at(x, y) = 0.9 * reference::sample_linear(source, wanted.uv(x, y));
+        }
+    }
+    expect("gaussian, twice as large", "filter.blurred", wanted);
+}
+
 TEST_P(PictureAccuracy, ImageCoversTheTarget) {
     const std::string file = pictures_.waves(80, 80, 0.15F);
     render({pass("image", "picture.image", {{"file", file}, {"fit", "cover"}, {"gain", 0.7}})},
