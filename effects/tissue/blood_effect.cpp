@@ -10,6 +10,7 @@
 #include "engine/core/error.h"
 #include "engine/core/hash.h"
 #include "engine/core/log.h"
+#include "engine/core/mesh_adjacency.h"
 #include "engine/runtime/pass.h"
 
 namespace viscera::tissue {
@@ -123,6 +124,7 @@ Work BloodEffect::prepare(Prepare& prepare) {
         check_sizes(prepare);
         parameters_key_ = prepare.parameters_key();
         mesh_ = SurfaceMesh::load(prepare.assets(), params_.mesh);
+        surface_ends_ = find_adjacency(mesh_->data().indices, mesh_->places()).open_edges > 0;
         to_world_ = placement_matrix(params_.mesh.placement, mesh_->centre());
         state_ = BloodState::find(prepare.assets(), params_.state);
         const std::uint64_t shape =
@@ -234,7 +236,8 @@ void BloodEffect::set_medium() {
     medium_.spreading = static_cast<float>(params_.gravity.spreading);
     medium_.relief_pull = static_cast<float>(relief_pull_);
     medium_.pinning = static_cast<float>(liquid.pinning_mm);
-    medium_.open_edges = params_.open_edges;
+    // Where a closed surface seems to end its charts touch the texture's border, or map it badly.
+    medium_.open_edges = params_.open_edges && surface_ends_;
     medium_.sealed_energy = static_cast<float>(params_.sealed_energy);
 }
 

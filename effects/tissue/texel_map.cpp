@@ -19,7 +19,7 @@ namespace {
 constexpr std::uint32_t none = MeshAdjacency::none;
 
 /// Named in the disk cache; another number when maps are made in another way.
-constexpr std::string_view cached_kind = "texel-map-2";
+constexpr std::string_view cached_kind = "texel-map-3";
 
 bool read_map(const io::DiskCache& cache, std::uint64_t key, int size, TexelMap& map) {
     const auto bytes = cache.load(cached_kind, key);
@@ -88,6 +88,9 @@ class MapMaker {
         const double area2 = signed_area2(t);
         map_.faults.flat_triangles += area2 == 0.0 ? 1 : 0;
         map_.faults.mirrored_triangles += area2 < 0.0 ? 1 : 0;
+        if (is_collapsed(mesh_.indices, mesh_.place, std::size_t{3} * t)) {
+            return;  // its texels would be cells without area; beside it gutters lead on
+        }
         constexpr int most_textures = 4;
         const bool seen =
             for_each_texel(corner, most_textures * map_.size,

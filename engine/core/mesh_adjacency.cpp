@@ -61,16 +61,26 @@ void pair_sheets(std::span<const std::uint32_t> indices, std::span<const std::ui
 
 }  // namespace
 
+bool is_collapsed(std::span<const std::uint32_t> indices, std::span<const std::uint32_t> place,
+                  std::size_t first) {
+    const std::uint32_t a = place[indices[first]];
+    const std::uint32_t b = place[indices[first + 1]];
+    const std::uint32_t c = place[indices[first + 2]];
+    return a == b || b == c || c == a;
+}
+
 MeshAdjacency find_adjacency(std::span<const std::uint32_t> indices, std::span<const std::uint32_t> place) {
     MeshAdjacency result;
     result.across.assign(indices.size(), MeshAdjacency::none);
     std::vector<Edge> edges;
     edges.reserve(indices.size());
-    for (std::uint32_t h = 0; h < indices.size(); ++h) {
-        const std::uint32_t a = place[indices[h]];
-        const std::uint32_t b = place[indices[MeshAdjacency::next(h)]];
-        // An edge without length borders on nothing.
-        if (a != b) {
+    for (std::uint32_t t = 0; t + 2 < indices.size(); t += 3) {
+        if (is_collapsed(indices, place, t)) {
+            continue;
+        }
+        for (std::uint32_t h = t; h < t + 3; ++h) {
+            const std::uint32_t a = place[indices[h]];
+            const std::uint32_t b = place[indices[MeshAdjacency::next(h)]];
             edges.push_back({std::min(a, b), std::max(a, b), h});
         }
     }

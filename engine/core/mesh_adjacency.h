@@ -27,8 +27,14 @@ struct MeshAdjacency {
     }
 };
 
+/// Whether two corners of the triangle whose first index is `first` are one place, as of half the triangles
+/// at the pole of a sphere.
+[[nodiscard]] bool is_collapsed(std::span<const std::uint32_t> indices, std::span<const std::uint32_t> place,
+                                std::size_t first);
+
 /// `place`: per vertex the vertex that stands for its place, so that triangles which only share places meet
-/// too. Triangles may be wound either way.
+/// too. Triangles may be wound either way. Collapsed ones are left out: what lies on either side of one
+/// meets.
 [[nodiscard]] MeshAdjacency find_adjacency(std::span<const std::uint32_t> indices,
                                            std::span<const std::uint32_t> place);
 

@@ -90,6 +90,10 @@ float share(ivec2 cell, ivec2 axis) {
 vec4 face(ivec2 a, ivec2 axis, float kind_a, vec3 origin) {
     ivec2 b = a + axis;
     ivec2 along = axis.yx;
+    // Beyond the texture nobody could say what came there.
+    if (any(lessThan(a, ivec2(0))) || any(greaterThan(b, last))) {
+        return vec4(0.0);
+    }
     float kind_b = kind(b);
     bool from_a = kind_a == surface;
     bool from_b = kind_b == surface;
