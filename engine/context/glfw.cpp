@@ -2,6 +2,8 @@
 #include <GLFW/glfw3.h>
 
 #include <cstdlib>
+#include <exception>
+#include <utility>
 
 #include "engine/context/backends.h"
 #include "engine/context/context_info.h"
@@ -139,7 +141,12 @@ class GlfwWindow final : public WindowContext {
     }
 
     void swap() override { api_.swap_buffers(window_); }
-    void poll() override { api_.poll_events(); }
+    void poll() override {
+        api_.poll_events();
+        if (failure_) {
+            std::rethrow_exception(std::exchange(failure_, nullptr));
+        }
+    }
     [[nodiscard]] bool should_close() const override { return api_.window_should_close(window_) != 0; }
     void close() override { api_.set_window_should_close(window_, GLFW_TRUE); }
     [[nodiscard]] PixelSize framebuffer_size() const override {
@@ -158,6 +165,9 @@ class GlfwWindow final : public WindowContext {
 
   private:
     void listen();
+    /// Calls what listens to a window. No exception may pass through GLFW, which is C: poll() throws it.
+    template <class Tell>
+    static void tell(GLFWwindow* window, Tell&& tell);
 
     /// GLFW releases a window that it still believes current before it destroys it, which GLX takes for an
     /// error, and ends the process, while another library's context is current. So that one steps aside.
@@ -184,50 +194,62 @@ class GlfwWindow final : public WindowContext {
 
     GlfwApi api_;
     GLFWwindow* window_ = nullptr;
-    CurrentSlot slot_;  ///< what is current when this window is
+    CurrentSlot slot_;            ///< what is current when this window is
+    std::exception_ptr failure_;  ///< the first thing that a listener threw since poll()
 };
 
-void GlfwWindow::listen() {
+template <class Tell>
+void GlfwWindow::tell(GLFWwindow* window, Tell&& tell) {
     // The callbacks hold no state, so they find the reader of the window's user pointer in the loaded
     // library.
-    struct Self {
-        static GlfwWindow& of(GLFWwindow* window) {
-            const auto read = SharedLibrary::find_loaded({library_name})
-                                  ->find<decltype(&glfwGetWindowUserPointer)>("glfwGetWindowUserPointer");
-            return *static_cast<GlfwWindow*>(read(window));
-        }
-    };
+    const auto read = SharedLibrary::find_loaded({library_name})
+                          ->find<decltype(&glfwGetWindowUserPointer)>("glfwGetWindowUserPointer");
+    GlfwWindow& self = *static_cast<GlfwWindow*>(read(window));
+    try {
+        tell(self);
+    } catch (...) {
+        self.failure_ = self.failure_ ? self.failure_ : std::current_exception();
+    }
+}
+
+void GlfwWindow::listen() {
     api_.set_window_user_pointer(window_, this);
     api_.set_cursor_pos_callback(window_, [](GLFWwindow* window, double x, double y) {
-        GlfwWindow& self = Self::of(window);
-        if (self.events.cursor) {
-            const CursorPosition at = self.to_pixels(x, y);
-            self.events.cursor(at.x, at.y);
-        }
+        tell(window, [&](const GlfwWindow& self) {
+            if (self.events.cursor) {
+                const CursorPosition at = self.to_pixels(x, y);
+                self.events.cursor(at.x, at.y);
+            }
+        });
     });
     api_.set_mouse_button_callback(window_, [](GLFWwindow* window, int button, int action, int mods) {
-        GlfwWindow& self = Self::of(window);
-        if (self.events.button && button <= GLFW_MOUSE_BUTTON_MIDDLE) {
-            self.events.button(static_cast<MouseButton>(button), action == GLFW_PRESS, modifiers_of(mods));
-        }
+        tell(window, [&](const GlfwWindow& self) {
+            if (self.events.button && button <= GLFW_MOUSE_BUTTON_MIDDLE) {
+                self.events.button(static_cast<MouseButton>(button), action == GLFW_PRESS,
+                                   modifiers_of(mods));
+            }
+        });
     });
     api_.set_key_callback(window_, [](GLFWwindow* window, int key, int, int action, int mods) {
-        GlfwWindow& self = Self::of(window);
-        if (self.events.key && key != GLFW_KEY_UNKNOWN) {
-            self.events.key(key, action != GLFW_RELEASE, modifiers_of(mods));
-        }
+        tell(window, [&](const GlfwWindow& self) {
+            if (self.events.key && key != GLFW_KEY_UNKNOWN) {
+                self.events.key(key, action != GLFW_RELEASE, modifiers_of(mods));
+            }
+        });
     });
     api_.set_scroll_callback(window_, [](GLFWwindow* window, double x, double y) {
-        GlfwWindow& self = Self::of(window);
-        if (self.events.scroll) {
-            self.events.scroll(x, y);
-        }
+        tell(window, [&](const GlfwWindow& self) {
+            if (self.events.scroll) {
+                self.events.scroll(x, y);
+            }
+        });
     });
     api_.set_framebuffer_size_callback(window_, [](GLFWwindow* window, int width, int height) {
-        GlfwWindow& self = Self::of(window);
-        if (self.events.resize) {
-            self.events.resize(width, height);
-        }
+        tell(window, [&](const GlfwWindow& self) {
+            if (self.events.resize) {
+                self.events.resize(width, height);
+            }
+        });
     });
 }
 

@@ -53,7 +53,7 @@ struct CursorPosition {
 class WindowContext : public Context {
   public:
     virtual void swap() = 0;
-    /// Handles what the user did since the last call.
+    /// Handles what the user did since the last call. Throws what the first of `events` threw.
     virtual void poll() = 0;
     [[nodiscard]] virtual bool should_close() const = 0;
     virtual void close() = 0;

@@ -21,12 +21,14 @@ struct Close {
     void operator()(TIFFOpenOptions* options) const { TIFFOpenOptionsFree(options); }
 };
 
+/// What libtiff says. Of a fixed size, since no exception may pass through it, which is C.
+using Message = std::array<char, 200>;
+
 /// Keeps the first message; 1: it goes no further, not to the standard error stream.
 int keep(TIFF*, void* text, const char*, const char* format, va_list arguments) {
-    std::array<char, 200> buffer{};
-    auto& message = *static_cast<std::string*>(text);
-    if (message.empty() && std::vsnprintf(buffer.data(), buffer.size(), format, arguments) > 0) {
-        message = buffer.data();
+    auto& message = *static_cast<Message*>(text);
+    if (message[0] == '\0') {
+        (void)std::vsnprintf(message.data(), message.size(), format, arguments);
     }
     return 1;
 }
@@ -199,11 +201,12 @@ class Reader {
     }
 
     [[noreturn]] void fail(const std::string& what) const {
-        throw Error(ErrorCode::file, file_.string(), what + (message_.empty() ? "" : ": " + message_));
+        throw Error(ErrorCode::file, file_.string(),
+                    what + (message_[0] == '\0' ? "" : std::string(": ") + message_.data()));
     }
 
     std::filesystem::path file_;
-    std::string message_;
+    Message message_{};
     std::size_t pixel_ = 1;  ///< bytes of all channels of a pixel
     std::size_t piece_ = 1;  ///< of those that lie beside each other in the file
     std::unique_ptr<TIFF, Close> tiff_;

@@ -106,6 +106,27 @@ TEST_F(Window, TellsWhatItsUserDoes) {
                   key::down == GLFW_KEY_DOWN && key::up == GLFW_KEY_UP && key::keypad_0 == GLFW_KEY_KP_0);
 }
 
+TEST_F(Window, WhatAListenerThrowsComesOutOfPollAndNotThroughGlfw) {
+    const auto window = create_window(options_);
+    window->events.scroll = [](double, double y) { throw std::runtime_error(std::to_string(y)); };
+    const auto glfw = SharedLibrary::open("glfw", {"libglfw.so.3"}, "");
+    auto* const handle = static_cast<GLFWwindow*>(window->native_window());
+    const auto scroll = glfw.find<decltype(&glfwSetScrollCallback)>("glfwSetScrollCallback")(handle, nullptr);
+    EXPECT_NO_THROW(scroll(handle, 0.0, 1.0));
+    EXPECT_NO_THROW(scroll(handle, 0.0, 2.0));
+    EXPECT_THROW(
+        {
+            try {
+                window->poll();
+            } catch (const std::runtime_error& error) {
+                EXPECT_EQ(std::string_view(error.what()).substr(0, 1), "1") << "the first one";
+                throw;
+            }
+        },
+        std::runtime_error);
+    EXPECT_NO_THROW(window->poll());
+}
+
 TEST_F(Window, AlternatesWithEglAndOsmesa) {
     const auto window = create_context(Backend::glfw, options_);
     const auto window_gl = gl::Functions::load(window->proc_address());
