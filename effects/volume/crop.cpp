@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/hash.h"
+
 namespace viscera::volume {
 
 CropBox crop_box(const CropParams& crop, const glm::ivec3& dims) {
@@ -17,6 +19,17 @@ CropBox crop_box(const CropParams& crop, const glm::ivec3& dims) {
         box.voxels.size[a] = static_cast<int>(std::ceil(last)) - box.voxels.first[a];
     }
     return box;
+}
+
+std::uint64_t limits_subject(const glm::dmat4& local_to_world, const CropParams* crop,
+                             const glm::ivec3& dims) {
+    Hash hash;
+    hash.add(local_to_world);
+    if (crop != nullptr) {
+        const CropBox box = crop_box(*crop, dims);
+        hash.add(box.low).add(box.high);
+    }
+    return hash.value();
 }
 
 }  // namespace viscera::volume

@@ -151,8 +151,11 @@ Work LimitsEffect::prepare(Prepare& prepare) {
     if (region.empty()) {
         return Work::idle("what limits the rays lies outside the view");
     }
-    return Work::in_region(region, "only where the limits can be seen",
-                           Hash().add(mesh_key_).add(view.view).add(view.projection).value());
+    Work work = Work::in_region(region, "only where the limits can be seen",
+                                Hash().add(mesh_key_).add(view.view).add(view.projection).value());
+    work.subject =
+        limits_subject(space_.local_to_world, params_.mesh.empty() ? &params_.crop : nullptr, grid.dims);
+    return work;
 }
 
 void LimitsEffect::draw(const Pass& pass) {

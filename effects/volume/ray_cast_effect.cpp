@@ -137,6 +137,25 @@ void RayCastEffect::find_crop() {
     crop_ = box.voxels;
 }
 
+/// Limits that were drawn for another place, crop or kind let rays begin where nothing of this volume is.
+void RayCastEffect::check_limits(Prepare& prepare) const {
+    if (params_.sampling.limits == Limits::analytic) {
+        return;
+    }
+    const std::uint64_t own = limits_subject(
+        space_.local_to_world, params_.sampling.limits == Limits::two_pass ? &params_.crop : nullptr,
+        source_->volume().grid.dims);
+    for (const std::string_view port : {"entry", "exit", "inner_entry", "inner_exit"}) {
+        const std::uint64_t subject = prepare.subject(port);
+        if (subject != 0 && subject != own) {
+            prepare.log().fault("volume.other_limits",
+                                "the ray caster's '" + std::string(port) +
+                                    "' is drawn for another volume, place or crop, or for a mesh where "
+                                    "faces are asked for: its rays begin or end in the wrong places");
+        }
+    }
+}
+
 Work RayCastEffect::prepare(Prepare& prepare) {
     source_ = load_source(prepare.assets(), params_.volume, prepare.frame());
     if (!source_) {
@@ -222,6 +241,7 @@ Work RayCastEffect::prepare(Prepare& prepare) {
     if (params_.sampling.limits != Limits::analytic && !prepare.has("exit")) {
         return Work::idle("what limits the rays is not in the view");
     }
+    check_limits(prepare);
     const PixelRect region = project_bounds(bounds, view.view_projection() * space_.local_to_world, size);
     if (region.empty()) {
         return Work::idle("the volume lies outside the view");

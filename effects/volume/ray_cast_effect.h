@@ -72,6 +72,7 @@ class RayCastEffect final : public Effect {
     void fill_in(const Pass& pass, const RayFrame& frame);
     void cover(const Pass& pass, const gl::Program& program) const;
     void find_crop();
+    void check_limits(Prepare& prepare) const;
     void bind_blue_noise(const Pass& pass, const gl::Program& program);
 
     RayCastParams params_;

@@ -160,6 +160,20 @@ TEST_F(RayLimits, AVolumeBehindTheFarPlaneIsNotSeen) {
     EXPECT_EQ(difference(got, got).seen, 0U);
 }
 
+TEST_F(RayLimits, LimitsOfAnotherCropOrPlaceAreSaid) {
+    const nlohmann::json camera = camera_at({250, -380, 120});
+    const nlohmann::json crop = {{"crop", {{"first", {3, 0, 0}}}}};
+    const nlohmann::json moved = {{"volume", {{"placement", {{"move_mm", {5, 0, 0}}}}}}};
+    for (const nlohmann::json& other : {crop, moved}) {
+        Stage stage;
+        (void)mixed_shot(stage, mixed_scene(passes(other), cast("two_pass"), camera), volume_);
+        ASSERT_EQ(stage.complaints().size(), 1U) << other;
+        EXPECT_NE(stage.complaints()[0].find("another volume, place or crop"), std::string::npos);
+        EXPECT_EQ(stage.renderer().log().faults().at("volume.other_limits"), 2U) << "entry and exit";
+    }
+    stage_.make_current();
+}
+
 TEST_F(RayLimits, WithoutThePassesTheSceneIsRefused) {
     EXPECT_THROW(
         (void)mixed_shot(stage_,
