@@ -13,7 +13,7 @@ namespace {
 constexpr int tile_side = 32;  // a multiple of a block's
 // A drop moves two texels in a step at most, and the film that it leaves one: blood_mark.vert.
 constexpr int steps_per_plan = 4;
-constexpr int points_per_drop = 3;  // as blood_mark.vert, for blocks
+constexpr int points_per_drop = 2;  // as blood_mark.vert, for blocks
 // How far across a seam blood goes until then, beyond where it lies or gutters lead.
 constexpr int past_seam = 4;
 constexpr float steps_per_look = 8.0F;  // at most

@@ -36,8 +36,8 @@ void main() {
     }
 #else
     ivec2 size = textureSize(u_drops, 0);
-    int number = u_blockwise ? gl_VertexID / 3 : gl_VertexID;
-    int part = u_blockwise ? gl_VertexID % 3 : 0;
+    int number = u_blockwise ? gl_VertexID / 2 : gl_VertexID;
+    int part = u_blockwise ? gl_VertexID & 1 : 0;
     int index = (u_first + number) % (size.x * size.y);
     vec4 drop = texelFetch(u_drops, ivec2(index % size.x, index / size.x), 0);
     if (drop.z > 0.0) {
@@ -65,14 +65,9 @@ void main() {
             low = floor(max(min(at, at + way) - extent, vec2(0.0)) / 8.0);
             high = floor(min(max(at, at + way) + extent, u_film_size - 0.5) / 8.0);
         }
-        // Points are square: one at either end covers what is longer than wide.
         vec2 count = high - low + 1.0;
-        float longer = max(count.x, count.y);
-        float shorter = min(count.x, count.y);
-        float side = part > 0 && 2.0 * shorter >= longer ? shorter : longer;
-        vec2 corner = part == 2 ? high + 1.0 - side : low;
-        gl_PointSize = side;
-        gl_Position = vec4((2.0 * corner + side) / vec2(u_tile_count) - 1.0, 0.0, 1.0);
+        gl_PointSize = max(count.x, count.y);
+        gl_Position = vec4((low + high + 1.0) / vec2(u_tile_count) - 1.0, 0.0, 1.0);
     }
 #endif
 }

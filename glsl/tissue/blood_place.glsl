@@ -32,9 +32,13 @@ vec3 place_on_surface(vec2 texel) {
     // Beside a corner of charts the jump may miss the surface by less than a texel, and at a pole, where charts end in a point, by two.
     vec2 best = centre;
     bool found = false;
-    for (int i = 0; i < 35 && !found; ++i) {
-        vec2 candidate = i == 0 ? jump : i < 10 ? centre + vec2(float((i - 1) % 3 - 1), float((i - 1) / 3 - 1)) * (i == 1 ? 0.0 : 1.0)
-                                                : centre + vec2(float((i - 10) % 5 - 2), float((i - 10) / 5 - 2));
+    for (int i = 0; i < 10 && !found; ++i) {
+        vec2 candidate = i == 0 ? jump : centre + vec2(float((i - 1) % 3 - 1), float((i - 1) / 3 - 1)) * (i == 1 ? 0.0 : 1.0);
+        found = texelFetch(u_film, clamp(ivec2(floor(candidate)), ivec2(0), last), 0).w > 0.0;
+        best = found ? candidate : best;
+    }
+    for (int i = 0; i < 25 && !found; ++i) {
+        vec2 candidate = centre + vec2(float(i % 5 - 2), float(i / 5 - 2));
         found = texelFetch(u_film, clamp(ivec2(floor(candidate)), ivec2(0), last), 0).w > 0.0;
         best = found ? candidate : best;
     }
