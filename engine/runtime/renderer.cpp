@@ -97,6 +97,7 @@ class Renderer::Impl {
 
     const FrameReport& render(const Frame& frame) {
         const gl::CpuTimer timer;
+        check_current();
         check_frame(frame);
         if (scene_.scene().passes.empty()) {
             throw Error(ErrorCode::usage, "frame", "there is no scene to render");
@@ -163,8 +164,17 @@ class Renderer::Impl {
         scene_.replan();
     }
 
+    /// Drivers take calls without a context for no calls at all, so that nothing would be drawn and nobody
+    /// told.
+    void check_current() const {
+        if (gl_->GetString(GL_VERSION) == nullptr) {
+            throw Error(ErrorCode::context, "renderer", "no OpenGL context is current on this thread");
+        }
+    }
+
     template <class Work>
     auto with_host_state(Work&& work) {
+        check_current();
         const gl::HostStateScope scope(host_state_, log_);
         return work();
     }

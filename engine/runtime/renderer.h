@@ -101,8 +101,8 @@ struct DumpRequest {
 };
 
 /// Renders a scene in the context that is current. Every member must be called with that context current, and
-/// so must the destructor. Throws Error; after a throw the host's state is restored and the renderer stays
-/// usable.
+/// so must the destructor; without any, what draws or reads throws Error(context). Throws Error; after a
+/// throw the host's state is restored and the renderer stays usable.
 class Renderer {
   public:
     /// Throws Error(context) when the context offers less than OpenGL 3.3 core.

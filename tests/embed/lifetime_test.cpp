@@ -1,3 +1,4 @@
+#include <functional>
 #include <thread>
 
 #include "tests/embed/embed_test.h"
@@ -117,6 +118,23 @@ TEST_P(Embedded, AfterAnErrorTheHostAndTheNextFrameAreAsIfNothingHadBeen) {
     }
     renderer.keep({});
     goes_on("after an unknown target to keep");
+}
+
+TEST_P(Embedded, WithoutAContextNothingIsDrawnAndTheCallerIsTold) {
+    Renderer renderer(context().proc(), registry(), options());
+    renderer.set_scene(world().small());
+    renderer.render(renderer.still(World::time_s));
+    const auto clean = pictures(renderer);
+    context().release();
+    for (const auto& call : {std::function<void()>([&] { renderer.render(renderer.still(World::time_s)); }),
+                             std::function<void()>([&] { (void)renderer.read("final"); })}) {
+        const auto error = error_of(call);
+        ASSERT_TRUE(error);
+        EXPECT_EQ(error->code(), ErrorCode::context) << error->what();
+    }
+    context().make_current();
+    renderer.render(renderer.still(World::time_s));
+    EXPECT_EQ(differing(clean, pictures(renderer)), std::vector<std::string>{});
 }
 
 TEST_P(Embedded, TwoRenderersShareAContext) {
