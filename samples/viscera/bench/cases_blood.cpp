@@ -35,13 +35,13 @@ nlohmann::json blood_scene(Lab& lab, const nlohmann::json& wounds, int max_drops
             .output("tissue.energy");
     }
     scene
-        .pass(
-            "blood", "tissue.blood",
-            {{"mesh", mesh},
-             {"size", size},
-             {"state", "bench" + std::to_string(max_drops) + (film ? "film" : "") + (energy ? "energy" : "")},
-             {"liquid", {{"steps_per_s", steps_per_s}, {"max_drops", max_drops}}},
-             {"wounds", wounds}})
+        .pass("blood", "tissue.blood",
+              {{"mesh", mesh},
+               {"size", size},
+               {"state", "bench" + std::to_string(max_drops) + '_' + std::to_string(wounds.size()) +
+                             (film ? "film" : "") + (energy ? "energy" : "")},
+               {"liquid", {{"steps_per_s", steps_per_s}, {"max_drops", max_drops}}},
+               {"wounds", wounds}})
         .target("picture", "rgba32f")
         .target("copy", "rgba32f")
         .pass("source", "bench.source", {{"amount", 1.0}}, {{"out", "picture"}})
@@ -84,6 +84,7 @@ void run_blood(Lab& lab) {
     measure("a step, 1 wound after 0.5 s", wounds_along(1, 30.0), 16384, 60);
     measure("the same and 1 contact of energy", wounds_along(1, 30.0), 16384, 60, false, true);
     measure("a step, 4 wounds after 1 s", wounds_along(4, 30.0), 16384, 120);
+    measure("4 wounds and 1 contact of energy", wounds_along(4, 30.0), 16384, 120, false, true);
     measure("a step, film on all of the surface", nlohmann::json::array(), 16384, 10, true);
     if (lab.hardware()) {
         // Each wound gives 9 drops a step at most; more blood makes them larger.
