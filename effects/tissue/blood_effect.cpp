@@ -102,17 +102,18 @@ void BloodEffect::check_sizes(const Prepare& prepare) const {
     }
 }
 
-/// Whether bake and flow are of the mesh and of the gravity that the parameters name.
-void BloodEffect::check_inputs(Prepare& prepare, std::uint64_t flow) const {
+/// Whether the bake is of the mesh that the parameters name, and what its flow was made by.
+void BloodEffect::check_inputs(Prepare& prepare) {
     check_mesh(prepare, "tissue.blood", mesh_->key(), params_.mesh.file.path.native());
-    const std::uint64_t surface = prepare.subject("position");
-    const std::uint64_t noted = surface == 0 ? 0 : flow_origin(prepare.assets(), surface)->key;
-    if (noted != 0 && noted != flow) {
-        prepare.log().fault(
-            "tissue.other_gravity",
-            "tissue.blood and the tissue.gravity that it reads differ in gravity_m_s2, "
-            "host_gravity, spreading, relief_pull, open_edges or in having a relief: blood stops "
-            "at seams; give both the same");
+    flow_ = *flow_over(prepare.assets(), prepare.subject("position"));
+    if (!flow_.known) {
+        prepare.log().fault("tissue.no_flow",
+                            "no tissue.gravity reads the bake that tissue.blood reads: blood stops at seams");
+    }
+    if (flow_.relief_pull > 0.0 && !prepare.has("relief")) {
+        prepare.log().fault("tissue.no_relief",
+                            "tissue.gravity reads a relief and tissue.blood does not: blood stops at seams");
+        flow_.relief_pull = 0.0;
     }
 }
 
@@ -136,11 +137,8 @@ Work BloodEffect::prepare(Prepare& prepare) {
     }
     const Frame& frame = prepare.frame();
     mesh_->move(frame.values, params_.mesh.host_positions, prepare.log());
-    gravity_ = gravity_of(params_.gravity, frame.values, prepare.log());
-    relief_pull_ = relief_pull(params_.gravity, prepare);
-    const std::uint64_t flow = flow_key(gravity_, params_.gravity, relief_pull_, params_.open_edges);
-    check_inputs(prepare, flow);
-    surface_key_ = Hash().add(mesh_->shape_key()).add(to_world_).add(flow).value();
+    check_inputs(prepare);
+    surface_key_ = Hash().add(mesh_->shape_key()).add(to_world_).add(flow_.key()).value();
     collect_wounds(params_, frame.values, prepare.log(), wounds_);
     collect_tools(params_, frame.values, prepare.log(), tools_);
 
@@ -231,13 +229,13 @@ void BloodEffect::set_medium() {
                              liquid.drying_mm_s);
     medium_.drop =
         glm::vec4(liquid.drop_aspect, liquid.trail_mm, liquid.drop_life_s, smallest_drop_share * drop);
-    medium_.down = glm::vec3(gravity_.down);
-    medium_.strength = static_cast<float>(gravity_.strength);
-    medium_.spreading = static_cast<float>(params_.gravity.spreading);
-    medium_.relief_pull = static_cast<float>(relief_pull_);
+    medium_.down = glm::vec3(flow_.gravity.down);
+    medium_.strength = static_cast<float>(flow_.gravity.strength);
+    medium_.spreading = static_cast<float>(flow_.spreading);
+    medium_.relief_pull = static_cast<float>(flow_.relief_pull);
     medium_.pinning = static_cast<float>(liquid.pinning_mm);
     // Where a closed surface seems to end its charts touch the texture's border, or map it badly.
-    medium_.open_edges = params_.open_edges && surface_ends_;
+    medium_.open_edges = flow_.open_edges && surface_ends_;
     medium_.sealed_energy = static_cast<float>(params_.sealed_energy);
 }
 
@@ -326,7 +324,7 @@ void BloodEffect::collect_drops(std::int64_t step) {
 }
 
 glm::dvec3 BloodEffect::gravity_mm_s2() const {
-    return gravity_.down * (gravity_.strength * standard_gravity_m_s2 * 1000.0);
+    return flow_.gravity.down * (flow_.gravity.strength * standard_gravity_m_s2 * 1000.0);
 }
 
 void BloodEffect::fly(double dt) {

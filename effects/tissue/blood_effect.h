@@ -6,6 +6,7 @@
 
 #include "effects/tissue/blood_params.h"
 #include "effects/tissue/blood_state.h"
+#include "effects/tissue/gravity.h"
 #include "effects/tissue/surface_search.h"
 #include "engine/runtime/effect.h"
 
@@ -34,7 +35,7 @@ class BloodEffect final : public Effect {
         glm::vec2 uv{0.0F};
     };
     void check_sizes(const Prepare& prepare) const;
-    void check_inputs(Prepare& prepare, std::uint64_t flow) const;
+    void check_inputs(Prepare& prepare);
     void find_places();
     void update_tree();
     void spawn(const Pass& pass);
@@ -58,8 +59,7 @@ class BloodEffect final : public Effect {
     std::shared_ptr<SurfaceMesh> mesh_;
     bool surface_ends_ = false;  ///< it has edges with nothing beyond
     glm::dmat4 to_world_{1.0};
-    Gravity gravity_;
-    double relief_pull_ = 0.0;
+    Flow flow_;
     std::uint64_t surface_key_ = 0;  ///< of the mesh as it lies now
     std::int64_t target_step_ = 0;
     std::uint64_t shown_version_ = 0;  ///< of the blood that this pass drew last

@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "effects/tissue/gravity.h"
+
 namespace viscera::tissue {
 
 std::span<const std::string_view> choice_names(BleedingKind) {
@@ -162,9 +164,6 @@ void BloodParams::visit(ParamVisitor& v) {
              .max = 4096},
             size);
     v.field({.name = "state", .doc = "Name of the blood; passes with the same name show the same."}, state);
-    gravity.visit(v);
-    v.field({.name = "open_edges", .doc = "Drops fall where the surface ends; otherwise they stay there."},
-            open_edges);
     v.field({.name = "liquid", .doc = "What blood is like."}, liquid);
     v.field({.name = "look", .doc = "What it looks like."}, look);
     v.field({.name = "wounds", .doc = "Places that bleed, at most 65536 with the host's."}, wounds);

@@ -7,7 +7,6 @@
 
 #include <glm/glm.hpp>
 
-#include "effects/tissue/gravity.h"
 #include "engine/core/params.h"
 #include "engine/runtime/surface_mesh.h"
 
@@ -83,8 +82,6 @@ struct BloodParams {
     SurfaceMeshParams mesh;
     int size = 512;
     std::string state = "blood";
-    GravityParams gravity;
-    bool open_edges = true;
     LiquidParams liquid;
     BloodLookParams look;
     std::vector<WoundParams> wounds;

@@ -55,19 +55,18 @@ Gravity gravity_of(const GravityParams& params, const HostValues* values, Log& l
     return {gravity / length, length / standard_gravity_m_s2};
 }
 
-std::uint64_t flow_key(const Gravity& gravity, const GravityParams& params, double relief_pull,
-                       bool open_edges) {
+std::uint64_t Flow::key() const {
     return Hash()
         .add(gravity.down)
         .add(gravity.strength)
-        .add(params.spreading)
+        .add(spreading)
         .add(relief_pull)
         .add(open_edges)
         .value();
 }
 
-std::shared_ptr<FlowOrigin> flow_origin(Assets& assets, std::uint64_t surface) {
-    return assets.shared<FlowOrigin>(surface, [] { return std::make_shared<FlowOrigin>(); });
+std::shared_ptr<Flow> flow_over(Assets& assets, std::uint64_t surface) {
+    return assets.shared<Flow>(surface, [] { return std::make_shared<Flow>(); });
 }
 
 Port read_relief() {

@@ -43,17 +43,19 @@ struct Gravity {
 /// another number of entries is a fault, and the scene's counts.
 [[nodiscard]] Gravity gravity_of(const GravityParams& params, const HostValues* values, Log& log);
 
-/// Hash of all that a flow over a surface is made by, besides the surface.
-[[nodiscard]] std::uint64_t flow_key(const Gravity& gravity, const GravityParams& params, double relief_pull,
-                                     bool open_edges);
+/// What the flow over a surface is made by, besides the surface. tissue.gravity notes it, and tissue.blood
+/// takes it from there for seams and jets: a film that another gravity drives at seams would stop there.
+struct Flow {
+    bool known = false;
+    Gravity gravity;
+    double spreading = 0.0;
+    double relief_pull = 0.0;  ///< 0 without a relief
+    bool open_edges = true;
 
-/// What the flow over a surface was made by this frame. tissue.gravity notes it; tissue.blood, which has the
-/// same parameters for seams and jets, compares: a film that another gravity drives at seams stops there.
-struct FlowOrigin {
-    std::uint64_t key = 0;  ///< flow_key(); 0: unknown
+    [[nodiscard]] std::uint64_t key() const;
 };
 /// Of a surface as Prepare::subject() tells it.
-[[nodiscard]] std::shared_ptr<FlowOrigin> flow_origin(Assets& assets, std::uint64_t surface);
+[[nodiscard]] std::shared_ptr<Flow> flow_over(Assets& assets, std::uint64_t surface);
 
 /// The port that reads the relief.
 [[nodiscard]] Port read_relief();

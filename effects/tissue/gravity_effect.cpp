@@ -10,7 +10,7 @@ void GravityMapParams::visit(ParamVisitor& v) {
     gravity.visit(v);
     visit_size(v, size);
     v.field({.name = "open_edges",
-             .doc = "A film runs off where the surface ends; otherwise it stands there as at a wall."},
+             .doc = "Blood runs off where the surface ends; otherwise it stands there as at a wall."},
             open_edges);
 }
 
@@ -52,8 +52,11 @@ Work GravityEffect::prepare(Prepare& prepare) {
     check_size(prepare, "gravity");
     gravity_ = gravity_of(params_.gravity, prepare.frame().values, prepare.log());
     relief_pull_ = relief_pull(params_.gravity, prepare);
-    flow_origin(prepare.assets(), prepare.subject("position"))->key =
-        flow_key(gravity_, params_.gravity, relief_pull_, params_.open_edges);
+    *flow_over(prepare.assets(), prepare.subject("position")) = {.known = true,
+                                                                 .gravity = gravity_,
+                                                                 .spreading = params_.gravity.spreading,
+                                                                 .relief_pull = relief_pull_,
+                                                                 .open_edges = params_.open_edges};
     return Work::all(Hash().add(prepare.parameters_key()).add(gravity_.down).add(gravity_.strength).value());
 }
 

@@ -51,7 +51,7 @@ json BloodStage::scene() const {
     json gravity_parameters = gravity;
     gravity_parameters["size"] = size;
     json blood_parameters = blood;
-    blood_parameters.update(gravity_parameters);
+    blood_parameters["size"] = size;
     blood_parameters["mesh"] = mesh;
     json passes = json::array({pass("bake", "tissue.bake", {{"mesh", mesh}, {"size", size}})});
     const auto add_picture = [&](const char* name, const std::string& file, const std::string& target) {

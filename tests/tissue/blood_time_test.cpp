@@ -72,17 +72,18 @@ TEST(BloodTime, SaysThatFramesBuildOnEachOther) {
     EXPECT_FALSE(stage.stage().renderer().keeps_state());
 }
 
-/// A film that seams and faces drive by two gravities would stop at seams.
-TEST(BloodTime, AnotherGravityOrMeshThanThatOfItsFlowIsSaid) {
+/// A film that only faces know to be drawn by a relief would stop at seams.
+TEST(BloodTime, AnotherMeshOrNoReliefAsItsFlowHasIsSaid) {
     BloodStage stage(64);
     set_slope(stage);
     stage.blood = {{"wounds", json::array({wound(20, 55, 80.0)})}};
+    stage.relief([](const glm::dvec3& p) { return 0.1 * std::sin(p.x); });
     const json scene = stage.scene();
-    const auto faults_with = [&](const char* key, const json& value) {
+    const auto faults_with = [&](const char* part, const char* key, const json& value) {
         json changed = scene;
         for (json& pass : changed["passes"]) {
             if (pass["effect"] == "tissue.blood") {
-                pass["parameters"][key] = value;
+                pass[part][key] = value;
             }
         }
         stage.stage().load(changed);
@@ -90,20 +91,14 @@ TEST(BloodTime, AnotherGravityOrMeshThanThatOfItsFlowIsSaid) {
         stage.frame(0.1);
         return stage.stage().renderer().log().faults();
     };
-    EXPECT_TRUE(faults_with("state", "same").empty());
-    for (const auto& [key, value] : {std::pair<const char*, json>{"spreading", 0.4},
-                                     {"gravity_m_s2", {0, 1, -9}},
-                                     {"open_edges", false}}) {
-        const auto before = stage.stage().renderer().log().faults();
-        const auto after = faults_with(key, value);
-        EXPECT_GT(after.at("tissue.other_gravity"),
-                  before.contains("tissue.other_gravity") ? before.at("tissue.other_gravity") : 0U)
-            << key;
-        EXPECT_FALSE(after.contains("tissue.other_mesh")) << key;
-    }
+    EXPECT_TRUE(faults_with("parameters", "state", "same").empty());
+    const auto faults = faults_with("targets", "relief", nullptr);
+    EXPECT_TRUE(faults.contains("tissue.no_relief"));
+    EXPECT_FALSE(faults.contains("tissue.no_flow"));
+    EXPECT_FALSE(faults.contains("tissue.other_mesh"));
     json mesh = scene["passes"][0]["parameters"]["mesh"];
     mesh["atlas"] = "generated";
-    EXPECT_TRUE(faults_with("mesh", mesh).contains("tissue.other_mesh"));
+    EXPECT_TRUE(faults_with("parameters", "mesh", mesh).contains("tissue.other_mesh"));
 }
 
 TEST(BloodTime, RestsWhenNothingMoves) {
