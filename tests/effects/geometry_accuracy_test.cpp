@@ -136,8 +136,8 @@ TEST_P(GeometryAccuracy, MainByThickness) {
     json parameters = tube_parameters();
     parameters["vessel"]["full_calibre_mm"] = 9;
     parameters["method"] = "thickness";
-    // The way through a vessel falls to 0 along its whole outline, more steeply the nearer it comes: there are
-    // more such pixels. Measured are up to 16.
+    // The way through a vessel falls to 0 along its whole outline, more steeply the nearer it comes: there
+    // are more such pixels. Measured are up to 16.
     most_steep_ = 3 * most_edge_on;
     load(parameters);
     expect_main("main, thickness", 0.6);

@@ -134,7 +134,8 @@ std::vector<ParameterSet> parameter_sets() {
         cast(R"("sampling": {"filter": "bspline_fp32"}, "shading": {"enabled": true})"),
         cast(R"("sampling": {"filter": "catmull_rom"}, "shading": {"enabled": true})"),
         cast(R"("sampling": {"filter": "catmull_rom_fp32"}, "shading": {"enabled": true})"),
-        cast(R"("function": "accumulate", "accumulate": {"channels": [{}, {}, {}]}, "labels": {"host": "labels"},
+        cast(
+            R"("function": "accumulate", "accumulate": {"channels": [{}, {}, {}]}, "labels": {"host": "labels"},
                 "overlay": {"host": "overlay"}, "shading": {"enabled": true,
                 "light_volume": {"ambient_occlusion": 1}}, "sampling": {"filter": "catmull_rom"})"),
         cast(R"("function": "accumulate", "accumulate": {"channels": [{}, {}]}, "shading": {"enabled": true},
