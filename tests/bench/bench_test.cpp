@@ -8,6 +8,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "tests/io/temp_folder.h"
+
 namespace viscera::test {
 namespace {
 
@@ -16,10 +18,7 @@ using nlohmann::json;
 /// Runs the app's bench, small and short. Ratios are judged by processor time, which other programs on the
 /// machine hardly change.
 json bench(const std::string& arguments) {
-    const auto folder = std::filesystem::temp_directory_path() /
-                        ("viscera_bench_" + std::to_string(std::rand()) +
-                         testing::UnitTest::GetInstance()->current_test_info()->name());
-    std::filesystem::create_directories(folder);
+    const TempFolder folder;
     const auto report = folder / "report.json";
     const std::string command = std::string("\"") + VISCERA_APP + "\" bench " + arguments +
                                 " --backend osmesa --report \"" + report.string() + "\" >\"" +
@@ -29,7 +28,6 @@ json bench(const std::string& arguments) {
     std::ifstream stream(report);
     json document = json::parse(stream, nullptr, false);
     EXPECT_FALSE(document.is_discarded()) << command;
-    std::filesystem::remove_all(folder);
     return document;
 }
 

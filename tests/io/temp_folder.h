@@ -49,4 +49,11 @@ inline std::string slurp(const std::filesystem::path& file) {
     return {std::istreambuf_iterator<char>(in), {}};
 }
 
+/// One for the whole process: tests run side by side, each in a process of its own, and none may read what
+/// another is just writing.
+inline const TempFolder& process_folder() {
+    static const TempFolder folder;
+    return folder;
+}
+
 }  // namespace viscera::test

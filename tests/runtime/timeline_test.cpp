@@ -1,6 +1,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "tests/io/temp_folder.h"
 #include "tests/runtime/runtime_test.h"
 
 namespace viscera::test {
@@ -55,7 +56,7 @@ TEST_P(TimelineFrames, AHostsValuesWin) {
 }
 
 TEST_P(TimelineFrames, VerticesOfMeshesRunIntoEachOther) {
-    const std::filesystem::path folder = std::filesystem::temp_directory_path();
+    const TempFolder folder;
     const auto write = [&](const char* name, const char* first) {
         const std::filesystem::path file = folder / name;
         std::ofstream(file) << "v " << first << " 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\n";

@@ -141,7 +141,7 @@ TEST(CoagulateSkip, LimitsConfineWhatChanges) {
 
 /// Frames 0 to 5, saved, loaded by another renderer, and on to 10: as if there had been no pause.
 TEST(CoagulateSkip, ASavedStateGoesOnAsIfNothingHadHappened) {
-    const auto folder = std::filesystem::temp_directory_path() / "viscera_tissue_test" / "saved";
+    const auto folder = process_folder() / "saved";
     std::filesystem::create_directories(folder);
     const nlohmann::json contacts{{{"from_mm", {10, 12, 0}},
                                    {"to_mm", {30, 25, 0}},
@@ -183,9 +183,7 @@ TEST(CoagulateSkip, ASavedStateGoesOnAsIfNothingHadHappened) {
 }
 
 std::filesystem::path saved_file(const std::string& name) {
-    const auto folder = std::filesystem::temp_directory_path() / "viscera_tissue_test";
-    std::filesystem::create_directories(folder);
-    return folder / name;
+    return process_folder() / name;
 }
 
 Image picture_of(int size, PixelFormat format, float value) {
@@ -269,7 +267,7 @@ TEST(CoagulateSkip, AHalfFloatStateDoesNotCreep) {
 }
 
 TEST(CoagulateSkip, AStateOfAnotherSizeIsRefused) {
-    const auto file = std::filesystem::temp_directory_path() / "viscera_tissue_test" / "small.exr";
+    const auto file = process_folder() / "small.exr";
     const io::ExrPart part{.name = "tissue.energy", .image = make_image(16, 16, PixelFormat::r32f)};
     io::write_exr(file, std::span(&part, 1));
     EnergyStage stage(nlohmann::json{{"load", {{"file", file.string()}}}});

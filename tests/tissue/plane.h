@@ -5,6 +5,8 @@
 #include <fstream>
 #include <string>
 
+#include "tests/io/temp_folder.h"
+
 namespace viscera::test {
 
 /// A square in the plane z = 0 from (0, 0) to (side, side) [mm], as an OBJ file of cells x cells squares. Its
@@ -17,9 +19,7 @@ struct Plane {
     double stretch = 1.0;
 
     [[nodiscard]] std::filesystem::path write(const std::string& name) const {
-        const auto folder = std::filesystem::temp_directory_path() / "viscera_tissue_test";
-        std::filesystem::create_directories(folder);
-        const auto file = folder / (name + ".obj");
+        const auto file = process_folder() / (name + ".obj");
         std::ofstream out(file);
         out.precision(9);
         const int row = cells + 1;
