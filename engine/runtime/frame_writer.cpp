@@ -1,11 +1,15 @@
 #include "engine/runtime/frame_writer.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <system_error>
 
 #include "engine/core/error.h"
 #include "engine/io/png.h"
@@ -49,6 +53,11 @@ FrameWriter::FrameWriter(FrameWriterOptions options, std::function<void(FrameRep
     if (failure) {
         throw Error(ErrorCode::file, options_.folder.string(),
                     "cannot make this folder: " + failure.message());
+    }
+    // Before anything is rendered that could not be kept.
+    if (::access(options_.folder.c_str(), W_OK | X_OK) != 0) {
+        throw Error(ErrorCode::file, options_.folder.string(),
+                    "cannot be written: " + std::generic_category().message(errno));
     }
     thread_ = std::thread([this] { run(); });
 }

@@ -189,6 +189,7 @@ TEST_F(Writer, AFolderThatCannotBeWrittenIsRefusedAtOnce) {
     std::filesystem::permissions(folder_.path(), std::filesystem::perms::owner_all);
     ASSERT_TRUE(error);
     EXPECT_EQ(error->code(), ErrorCode::file);
+    EXPECT_EQ(error->where(), folder_.path().string());
 }
 
 TEST_F(Writer, AFullDiskIsATypedErrorAndLeavesNoTornFile) {
