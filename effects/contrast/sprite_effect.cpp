@@ -6,6 +6,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/hash.h"
+#include "engine/core/size_text.h"
 #include "engine/gl/texture.h"
 #include "engine/runtime/assets.h"
 #include "engine/runtime/pass.h"
@@ -15,10 +16,6 @@ namespace {
 
 constexpr std::size_t batch = 16;               // as glsl/contrast/sprites.vert
 constexpr std::size_t floats_per_emitter = 10;  // base, tip, edge, size
-
-std::string size_of(const Image& image) {
-    return std::to_string(image.width) + " x " + std::to_string(image.height);
-}
 
 gl::Texture upload(const gl::Functions& gl, std::span<const std::shared_ptr<const Image>> layers,
                    std::string_view label) {
@@ -60,8 +57,9 @@ struct SpriteEffect::Pictures {
             const Image& image = *images.back();
             if (image.width != images.front()->width || image.height != images.front()->height) {
                 throw Error(ErrorCode::scene, "/views/" + std::to_string(images.size() - 1) + "/image",
-                            view.image.path.string() + " has " + size_of(image) +
-                                " pixels, the first view's picture " + size_of(*images.front()) +
+                            view.image.path.string() + " has " + size_text({image.width, image.height}) +
+                                " pixels, the first view's picture " +
+                                size_text({images.front()->width, images.front()->height}) +
                                 "; all views need the same size");
             }
         }

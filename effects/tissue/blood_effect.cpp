@@ -125,13 +125,13 @@ Work BloodEffect::prepare(Prepare& prepare) {
         check_sizes(prepare);
         parameters_key_ = prepare.parameters_key();
         mesh_ = SurfaceMesh::load(prepare.assets(), params_.mesh);
-        surface_ends_ = find_adjacency(mesh_->data().indices, mesh_->places()).open_edges > 0;
         to_world_ = placement_matrix(params_.mesh.placement, mesh_->centre());
         state_ = BloodState::find(prepare.assets(), params_.state);
         const std::uint64_t shape =
             Hash().add(params_.size).add(params_.liquid.max_drops).add(mesh_->key()).value();
         if (state_->shape_key != shape) {
             state_->shape_key = shape;
+            state_->surface_ends = find_adjacency(mesh_->data().indices, mesh_->places()).open_edges > 0;
             state_->begun = false;
         }
     }
@@ -235,7 +235,7 @@ void BloodEffect::set_medium() {
     medium_.relief_pull = static_cast<float>(flow_.relief_pull);
     medium_.pinning = static_cast<float>(liquid.pinning_mm);
     // Where a closed surface seems to end its charts touch the texture's border, or map it badly.
-    medium_.open_edges = flow_.open_edges && surface_ends_;
+    medium_.open_edges = flow_.open_edges && state_->surface_ends;
     medium_.sealed_energy = static_cast<float>(params_.sealed_energy);
 }
 

@@ -57,7 +57,6 @@ class BloodEffect final : public Effect {
     std::uint64_t parameters_key_ = 0;
     std::shared_ptr<BloodState> state_;
     std::shared_ptr<SurfaceMesh> mesh_;
-    bool surface_ends_ = false;  ///< it has edges with nothing beyond
     glm::dmat4 to_world_{1.0};
     Flow flow_;
     std::uint64_t surface_key_ = 0;  ///< of the mesh as it lies now

@@ -51,6 +51,7 @@ struct BloodState {
     std::uint64_t shown_version =
         0;                        ///< of what was shown last: changes count from there; 0: unlike all before
     std::uint64_t shape_key = 0;  ///< of the mesh, the size and the number of drops
+    bool surface_ends = false;    ///< the mesh has edges with nothing beyond
     std::uint64_t gpu_shape_key = 0;  ///< the same, of what `gpu` was made for
     std::uint64_t surface_key = 0;
     std::uint64_t seam_key = 0;

@@ -7,6 +7,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/hash.h"
+#include "engine/core/size_text.h"
 #include "engine/io/exr.h"
 #include "engine/runtime/assets.h"
 
@@ -70,8 +71,8 @@ std::shared_ptr<const SavedEnergy> load_energy(Assets& assets, const SavedEnergy
         const Image& image = part.image;
         if (image.width != size || image.height != size) {
             throw Error(ErrorCode::scene, name,
-                        "is " + std::to_string(image.width) + " x " + std::to_string(image.height) +
-                            " pixels, the state is " + std::to_string(size) + " x " + std::to_string(size));
+                        "is " + size_text({image.width, image.height}) + " pixels, the state is " +
+                            size_text(glm::ivec2(size)));
         }
         auto saved = std::make_shared<SavedEnergy>();
         saved->time_s = params.time_s ? params.time_s : time_of(part);

@@ -7,6 +7,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/hash.h"
+#include "engine/core/size_text.h"
 
 namespace viscera::volume {
 namespace {
@@ -110,8 +111,7 @@ int fitting_reduction(const glm::ivec3& dims, Storage storage, const TextureLimi
 }
 
 std::string too_large(const glm::ivec3& dims, Storage storage, const TextureLimits& limits) {
-    std::string text = "a volume of " + std::to_string(dims.x) + " x " + std::to_string(dims.y) + " x " +
-                       std::to_string(dims.z) + " voxels cannot be had:";
+    std::string text = "a volume of " + size_text(dims) + " voxels cannot be had:";
     if (storage != Storage::atlas) {
         text += " a 3-D texture has at most " + std::to_string(limits.side_3d) + " voxels a side";
     }

@@ -47,7 +47,7 @@ struct LabelParams {
     [[nodiscard]] bool used() const { return !file.empty() || !host.empty(); }
     /// How many looks have a transfer function of their own.
     [[nodiscard]] int ramp_count() const;
-    [[nodiscard]] bool has_ramps() const { return ramp_count() > 0; }
+    [[nodiscard]] bool has_ramps() const { return used() && ramp_count() > 0; }
     /// Throws Error(scene): file and host, an id listed twice.
     void validate() const;
 };

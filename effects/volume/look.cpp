@@ -55,7 +55,7 @@ std::vector<Look::Variant> Look::variants(const LookParams& params, const Transf
                 params.shading.enabled ? shaded == *params.shading.enabled : by_file || !shaded;
             const bool gradient_fits = transfer.gradient.empty() ? by_file || !by_gradient : by_gradient;
             if (shaded_fits && gradient_fits) {
-                all.push_back({shaded, by_gradient});
+                all.push_back({true, shaded, by_gradient});
             }
         }
     }
@@ -63,15 +63,20 @@ std::vector<Look::Variant> Look::variants(const LookParams& params, const Transf
 }
 
 std::vector<std::string> Look::defines(const LookParams& params, const Variant& variant) {
-    std::vector<std::string> names = defines_of_segments(params);
+    std::vector<std::string> names;
     if (variant.shaded) {
-        const std::vector<std::string> shading = params.shading.defines();
-        names.insert(names.end(), shading.begin(), shading.end());
+        names = params.shading.defines();
     }
     if (variant.by_gradient) {
         names.emplace_back("GRADIENT_OPACITY");
     }
-    if (params.labels.used() && params.labels.has_ramps()) {
+    if (params.labels.used()) {
+        names.emplace_back("LABELS");
+    }
+    if (!variant.composed) {
+        return names;
+    }
+    if (params.labels.has_ramps()) {
         names.emplace_back("LABEL_RAMPS");
     }
     if (params.overlay.used()) {
@@ -83,11 +88,7 @@ std::vector<std::string> Look::defines(const LookParams& params, const Variant& 
     return names;
 }
 
-std::vector<std::string> Look::defines_of_segments(const LookParams& params) {
-    return params.labels.used() ? std::vector<std::string>{"LABELS"} : std::vector<std::string>{};
-}
-
-std::string_view Look::load(const LookParams& params, const VolumeGrid& shown, bool composed,
+std::string_view Look::load(const LookParams& params, const Variant& variant, const VolumeGrid& shown,
                             Prepare& prepare) {
     if (parameters_key_ != prepare.parameters_key()) {
         parameters_key_ = prepare.parameters_key();
@@ -103,7 +104,7 @@ std::string_view Look::load(const LookParams& params, const VolumeGrid& shown, b
         }
         expect_fitting(*labels_, shown, "/labels");
     }
-    if (composed && params.overlay.used()) {
+    if (variant.composed && params.overlay.used()) {
         overlay_ = load_source(prepare.assets(), overlay_source_, prepare.frame());
         if (!overlay_) {
             return "the host gives no overlay of this name";
@@ -130,7 +131,7 @@ std::uint64_t Look::key() const {
 
 void Look::widen(const LookParams& params, const TransferFunction& function, const TexelMap& value_of_stored,
                  const TexelRange& stored, int entries, std::vector<StoredRange>& visible) const {
-    if (!params.labels.used() || !params.labels.has_ramps()) {
+    if (!params.labels.has_ramps()) {
         return;
     }
     for (const TransferFunction& ramp : ramps(params.labels, function)) {

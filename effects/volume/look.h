@@ -18,8 +18,11 @@
 
 namespace viscera::volume {
 
-/// What depends on the transfer function's file, which programs must be made for both ways.
+/// What depends on the ray function and on the transfer function's file, which programs must be made for all
+/// ways.
 struct LookVariant {
+    /// Whether colours are; else segments alone count, without transfer functions of their own.
+    bool composed = false;
     bool shaded = false;
     bool by_gradient = false;
     bool operator==(const LookVariant&) const = default;
@@ -62,17 +65,15 @@ class Look {
     [[nodiscard]] static std::vector<Variant> variants(const LookParams& params,
                                                        const TransferParams& transfer);
     [[nodiscard]] static Variant variant(const LookParams& params, const TransferFunction& function) {
-        return {params.shading.wanted(function), !function.gradient.empty()};
+        return {true, params.shading.wanted(function), !function.gradient.empty()};
     }
     [[nodiscard]] static std::vector<std::string> defines(const LookParams& params, const Variant& variant);
-    /// For ray functions that compose no colours: segments alone, without transfer functions of their own.
-    [[nodiscard]] static std::vector<std::string> defines_of_segments(const LookParams& params);
 
-    /// Loads the labels that the parameters name, and where colours are `composed` the overlay. Reason to
-    /// draw nothing: a volume that the host does not give; else empty. Throws Error(scene) for a curvilinear
-    /// one whose shape is not that of the volume that is shown.
-    [[nodiscard]] std::string_view load(const LookParams& params, const VolumeGrid& shown, bool composed,
-                                        Prepare& prepare);
+    /// Loads what the parameters name and the variant reads. Reason to draw nothing: a volume that the host
+    /// does not give; else empty. Throws Error(scene) for a curvilinear one whose shape is not that of the
+    /// volume that is shown.
+    [[nodiscard]] std::string_view load(const LookParams& params, const Variant& variant,
+                                        const VolumeGrid& shown, Prepare& prepare);
     /// Whether labels and overlay both fit 3-D textures.
     [[nodiscard]] bool fits_3d(const gl::Functions& gl) const;
     /// Of labels and overlay, for Work.
@@ -83,11 +84,10 @@ class Look {
     /// Binds everything that `defines` asks for.
     void bind(const LookParams& params, const Variant& variant, const LookScene& scene, const Pass& pass,
               const gl::Program& program);
-    /// The same for `defines_of_segments`.
-    void bind_segments(const LookParams& params, const LookScene& scene, const Pass& pass,
-                       const gl::Program& program);
 
   private:
+    void bind_labels(const LookParams& params, const LookScene& scene, const Pass& pass,
+                     const gl::Program& program);
     void bind_ramps(const LookParams& params, const LookScene& scene, const Pass& pass,
                     const gl::Program& program);
     void bind_overlay(const LookParams& params, const LookScene& scene, const Pass& pass,

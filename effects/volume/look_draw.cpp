@@ -73,11 +73,8 @@ Storage storage_of(const LookScene& scene) {
 
 }  // namespace
 
-void Look::bind_segments(const LookParams& params, const LookScene& scene, const Pass& pass,
-                         const gl::Program& program) {
-    if (!params.labels.used()) {
-        return;
-    }
+void Look::bind_labels(const LookParams& params, const LookScene& scene, const Pass& pass,
+                       const gl::Program& program) {
     const Volume& labels = labels_->volume();
     const glm::ivec3 n = labels.grid.dims;
     Hash ids;
@@ -273,8 +270,13 @@ void Look::bind(const LookParams& params, const Variant& variant, const LookScen
     if (variant.by_gradient) {
         bind_gradient(scene, pass, program);
     }
-    bind_segments(params, scene, pass, program);
-    if (params.labels.used() && params.labels.has_ramps()) {
+    if (params.labels.used()) {
+        bind_labels(params, scene, pass, program);
+    }
+    if (!variant.composed) {
+        return;
+    }
+    if (params.labels.has_ramps()) {
         bind_ramps(params, scene, pass, program);
     }
     if (params.overlay.used()) {

@@ -137,26 +137,20 @@ void RayCastEffect::draw(const Pass& pass) {
     if (gradients_ && !variant_.atlas) {
         bind_gradients(pass, program, map);
     }
-    if (!projects() || params_.look.labels.used()) {
-        LookScene scene{*source_,
-                        params_.volume.channel,
-                        function_,
-                        space_,
-                        TexelMap{value_scale, value_offset},
-                        texel_range(map),
-                        params_.transfer_function.entries};
-        scene.atlas = variant_.atlas;
-        if (shows_colours()) {
-            scene.value_of_texel = {};
-            scene.colours = &voxels_->volume();
-            scene.accumulate = &params_.accumulate;
-        }
-        if (projects()) {
-            look_.bind_segments(params_.look, scene, pass, program);
-        } else {
-            look_.bind(params_.look, variant_.look, scene, pass, program);
-        }
+    LookScene scene{*source_,
+                    params_.volume.channel,
+                    function_,
+                    space_,
+                    TexelMap{value_scale, value_offset},
+                    texel_range(map),
+                    params_.transfer_function.entries};
+    scene.atlas = variant_.atlas;
+    if (shows_colours()) {
+        scene.value_of_texel = {};
+        scene.colours = &voxels_->volume();
+        scene.accumulate = &params_.accumulate;
     }
+    look_.bind(params_.look, variant_.look, scene, pass, program);
     if (variant_.skipping != Skipping::none) {
         const VoxelBox& occupied = skip_map_.occupied_box();
         program.set("u_occupied_low", glm::vec3(occupied.first));

@@ -73,8 +73,7 @@ void RayCastEffect::check_colours() const {
     };
     refuse(params_.sampling.scheme == Scheme::preintegrated, "/sampling/scheme",
            "preintegrated integrates a transfer function over");
-    refuse(params_.look.labels.used() && params_.look.labels.has_ramps(), "/labels",
-           "transfer functions of segments take");
+    refuse(params_.look.labels.has_ramps(), "/labels", "transfer functions of segments take");
     refuse(!params_.transfer_function.gradient.empty(), "/transfer_function/gradient",
            "opacity by gradient is by that of");
 }
@@ -207,7 +206,7 @@ Work RayCastEffect::prepare(Prepare& prepare) {
                 std::string(choice_names(variant_.function)[static_cast<std::size_t>(variant_.function)]) +
                 "' shows");
     }
-    if (const std::string_view missing = look_.load(params_.look, volume.grid, !projects(), prepare);
+    if (const std::string_view missing = look_.load(params_.look, variant_.look, volume.grid, prepare);
         !missing.empty()) {
         return Work::idle(missing);
     }

@@ -69,14 +69,10 @@ std::span<const ProgramDesc> RayCastEffect::programs() const {
             }
             const std::vector<std::string> clip = clip_defines(params_.look.clip_planes);
             program.defines.insert(program.defines.end(), clip.begin(), clip.end());
-            if (function != RayFunction::composite) {
-                const std::vector<std::string> segments = Look::defines_of_segments(params_.look);
-                program.defines.insert(program.defines.end(), segments.begin(), segments.end());
-                programs_.push_back(std::move(program));
-                variants_.push_back({VolumeKind::cartesian, function, skipping});
-                continue;
-            }
-            for (const Look::Variant& look : Look::variants(params_.look, params_.transfer_function)) {
+            const std::vector<Look::Variant> looks =
+                function == RayFunction::composite ? Look::variants(params_.look, params_.transfer_function)
+                                                   : std::vector<Look::Variant>{Look::Variant{}};
+            for (const Look::Variant& look : looks) {
                 const std::vector<std::string> defines = Look::defines(params_.look, look);
                 programs_.push_back(program);
                 programs_.back().defines.insert(programs_.back().defines.end(), defines.begin(),

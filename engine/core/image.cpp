@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "engine/core/error.h"
+#include "engine/core/size_text.h"
 
 namespace viscera {
 
@@ -129,15 +130,13 @@ Image make_image(int width, int height, PixelFormat format) {
     const std::size_t pixel_bytes = bytes_per_pixel(format);
     constexpr auto most = static_cast<std::size_t>(std::numeric_limits<std::ptrdiff_t>::max());
     if (rows != 0 && columns > most / pixel_bytes / rows) {
-        throw Error(ErrorCode::limit, "image",
-                    std::to_string(width) + " x " + std::to_string(height) + " pixels are too many bytes");
+        throw Error(ErrorCode::limit, "image", size_text({width, height}) + " pixels are too many bytes");
     }
     Image image{width, height, format, {}};
     try {
         image.data.resize(columns * rows * pixel_bytes);
     } catch (const std::exception&) {
-        throw Error(ErrorCode::limit, "image",
-                    "no memory for " + std::to_string(width) + " x " + std::to_string(height) + " pixels");
+        throw Error(ErrorCode::limit, "image", "no memory for " + size_text({width, height}) + " pixels");
     }
     return image;
 }

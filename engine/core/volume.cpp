@@ -6,6 +6,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/pixel_index.h"
+#include "engine/core/size_text.h"
 
 namespace viscera {
 
@@ -109,8 +110,7 @@ void VolumeGrid::validate(std::string_view where) const {
     };
     constexpr double most_voxels = 288230376151711744.0;  // 2^58: sizes in bytes then fit 64 bits
     if (dims.x < 1 || dims.y < 1 || dims.z < 1) {
-        fail("dims " + std::to_string(dims.x) + " x " + std::to_string(dims.y) + " x " +
-             std::to_string(dims.z) + ": each must be 1 or more");
+        fail("dims " + size_text(dims) + ": each must be 1 or more");
     }
     if (static_cast<double>(dims.x) * dims.y * dims.z > most_voxels) {
         fail("dims are beyond what any machine holds");

@@ -4,14 +4,15 @@
 #include <string>
 
 #include "engine/core/error.h"
+#include "engine/core/size_text.h"
 #include "engine/gl/debug.h"
 
 namespace viscera::gl {
 namespace {
 
 std::string to_text(const Extent& extent) {
-    std::string text = std::to_string(extent.width) + " x " + std::to_string(extent.height);
-    return extent.depth == 1 ? text : text + " x " + std::to_string(extent.depth);
+    const glm::ivec3 size(extent.width, extent.height, extent.depth);
+    return size.z == 1 ? size_text(glm::ivec2(size)) : size_text(size);
 }
 
 std::size_t texel_count(const Extent& extent) {
@@ -179,8 +180,8 @@ void Texture::upload_region(Extent offset, Extent size, std::span<const std::byt
 void Texture::upload(const Image& image) {
     if (Extent{image.width, image.height, 1} != extent_ || texture_format(image.format) != format_) {
         throw Error(ErrorCode::usage, "texture upload",
-                    "a picture of " + std::to_string(image.width) + " x " + std::to_string(image.height) +
-                        " (" + std::string(info(image.format).name) + ") does not fit a texture of " +
+                    "a picture of " + size_text({image.width, image.height}) + " (" +
+                        std::string(info(image.format).name) + ") does not fit a texture of " +
                         to_text(extent_) + " texels and " + std::to_string(format_.bytes_per_pixel) +
                         " bytes each");
     }

@@ -18,6 +18,7 @@
 #include <stdexcept>
 
 #include "engine/core/error.h"
+#include "engine/core/size_text.h"
 #include "engine/io/exr.h"
 #include "engine/io/file_bytes.h"
 
@@ -156,7 +157,7 @@ void check_size(std::int64_t width, std::int64_t height, std::size_t channels, s
                          static_cast<double>(channels) * sizeof(float);
     if (width <= 0 || height <= 0 || width > (1 << 20) || height > (1 << 20) ||
         bytes > std::max(always_allowed, best_compression * static_cast<double>(file_bytes))) {
-        throw std::runtime_error("it claims " + std::to_string(width) + " x " + std::to_string(height) +
+        throw std::runtime_error("it claims " + size_text({width, height}) +
                                  " pixels, more than its bytes can hold");
     }
 }

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "engine/core/error.h"
+#include "engine/core/size_text.h"
 #include "engine/io/exr.h"
 #include "engine/io/file_bytes.h"
 #include "engine/io/png.h"
@@ -55,7 +56,7 @@ Image read_png_or_jpeg(const std::filesystem::path& file) {
         fail(file, std::string("is no readable picture: ") + stbi_failure_reason());
     }
     if (width <= 0 || height <= 0 || std::int64_t{width} * height > most_pixels) {
-        fail(file, "claims " + std::to_string(width) + " x " + std::to_string(height) + " pixels");
+        fail(file, "claims " + size_text({width, height}) + " pixels");
     }
     const bool grey = channels == 1;
     const int wanted = grey ? 1 : 4;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <optional>
 
+#include "engine/core/size_text.h"
 #include "engine/io/file_bytes.h"
 #include "engine/io/volume_readers.h"
 #include "engine/io/volume_text.h"
@@ -114,8 +115,7 @@ Volume read_csv_volume(const Reading& reading) {
     }
     head.type = FileScalar::f64;
     const std::uint64_t due = head.bytes(reading);
-    const std::string size = std::to_string(axes[0].count) + " x " + std::to_string(axes[1].count) + " x " +
-                             std::to_string(axes[2].count);
+    const std::string size = size_text(head.volume.grid.dims);
     // Twice the points would be half a grid: more likely no grid at all.
     if (due / sizeof(double) > 2 * points.size()) {
         reading.fail(std::to_string(points.size()) + " points are no grid of " + size);

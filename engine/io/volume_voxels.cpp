@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/core/error.h"
+#include "engine/core/size_text.h"
 #include "engine/io/volume_head.h"
 
 namespace viscera::io {
@@ -257,8 +258,8 @@ void require_memory(const VolumeHead& head, std::uint64_t beside, const Reading&
     const glm::ivec3 dims = head.volume.grid.dims;
     const int fitting = fitting_reduce(head, beside, available);
     throw Error(ErrorCode::limit, reading.file.string(),
-                std::to_string(dims.x) + " x " + std::to_string(dims.y) + " x " + std::to_string(dims.z) +
-                    " voxels need " + mebibytes(needed) + " of memory, there are " + mebibytes(available) +
+                size_text(dims) + " voxels need " + mebibytes(needed) + " of memory, there are " +
+                    mebibytes(available) +
                     (fitting > 0 ? "; reduce = " + std::to_string(fitting) + " would do"
                                  : "; no reduction makes it fit"));
 }

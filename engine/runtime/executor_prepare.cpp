@@ -2,6 +2,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/hash.h"
+#include "engine/core/size_text.h"
 #include "engine/runtime/executor.h"
 #include "engine/runtime/naming_pass.h"
 
@@ -43,8 +44,7 @@ void check_import(const gl::Functions& gl, const ImportedTexture& lent) {
     const int width = ask(GL_TEXTURE_WIDTH);
     const int height = ask(GL_TEXTURE_HEIGHT);
     if (width != lent.width || height != lent.height) {
-        const auto size = [](int w, int h) { return std::to_string(w) + " x " + std::to_string(h); };
-        refuse("is " + size(width, height) + ", not " + size(lent.width, lent.height));
+        refuse("is " + size_text({width, height}) + ", not " + size_text({lent.width, lent.height}));
     }
     if ((ask(GL_TEXTURE_DEPTH_SIZE) > 0) != info(lent.format).is_depth) {
         refuse(info(lent.format).is_depth ? "holds no depth" : "holds depth, not colour");

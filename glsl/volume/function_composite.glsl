@@ -44,7 +44,7 @@ vec4 slab_in_segments(Slab slab, float ahead, float behind, float middle, float 
     float inner = whole ? rise : 0.0;
     vec4 a = slab_mean(middle - rise, middle + inner, ramp_of(first));
     vec4 b = slab_mean(middle - inner, middle + rise, ramp_of(second));
-    float factor = labelled(vec4(0.0, 0.0, 0.0, 1.0), first).a;
+    float factor = factor_of(first);
     vec3 bias = front_bias(classify_segment(ahead, first), classify_segment(behind, first), factor * a.a, slab.length_mm);
     bias = whole ? bias : vec3(0.0);
     a = labelled(vec4(colour_of_mean(a, bias), a.a), first);

@@ -23,7 +23,7 @@ State begin() {
 // Share of a place's attenuation that is seen; what is hidden counts in no projection.
 float seen_at(vec3 local) {
 #ifdef LABELS
-    return segment_factor(local);
+    return factor_of(label_at(local));
 #else
     return 1.0;
 #endif

@@ -53,16 +53,15 @@ int label_at(vec3 local) {
     return inside ? found : 0;
 }
 
+// Factor on the extinction in a segment; 0: hidden.
+float factor_of(int label) {
+    return texelFetch(u_label_looks, ivec2(label, 1), 0).x;
+}
+
 // Colour and extinction in a segment.
 vec4 labelled(vec4 c, int label) {
     vec4 look = texelFetch(u_label_looks, ivec2(label, 0), 0);
-    vec4 how = texelFetch(u_label_looks, ivec2(label, 1), 0);
-    return vec4(mix(c.rgb, look.rgb, look.a), c.a * how.x);
-}
-
-// Factor on the extinction of what is at a place; 0: hidden.
-float segment_factor(vec3 local) {
-    return texelFetch(u_label_looks, ivec2(label_at(local), 1), 0).x;
+    return vec4(mix(c.rgb, look.rgb, look.a), c.a * factor_of(label));
 }
 
 // Row of the segment's transfer function.

@@ -141,7 +141,7 @@ constexpr Mutant mutants[] = {
      "0.9 * magnitude * u_gradient_place.x", "cast"},
     {"LightVolume", "volume_labels", "volume/material.glsl", "local, view_direction, arrives",
      "local, view_direction, vec2(1.0)", "cast"},
-    {"LabelFactor", "volume_labels", "volume/labels.glsl", "c.a * how.x", "c.a", "cast"},
+    {"LabelFactor", "volume_labels", "volume/labels.glsl", "c.a * factor_of(label)", "c.a", "cast"},
     {"LabelColour", "volume_labels", "volume/labels.glsl", "mix(c.rgb, look.rgb, look.a)", "c.rgb", "cast"},
     {"LabelRamp", "volume_labels", "volume/labels.glsl", "ivec2(label, 1), 0).y)", "ivec2(0, 1), 0).y)",
      "cast"},
