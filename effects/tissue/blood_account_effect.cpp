@@ -48,7 +48,7 @@ void BloodAccountEffect::draw(const Pass& pass) {
     pass.bind(program, "u_film", state_->gpu->film(), gl::Filter::nearest);
     pass.bind(program, "u_drops", state_->gpu->drops(), gl::Filter::nearest);
     pass.bind(program, "u_ledger", state_->gpu->ledger(), gl::Filter::nearest);
-    program.set("u_flying", static_cast<float>(state_->jets.flying_mm3()));
+    program.set("u_flying", static_cast<float>(state_->flying_mm3()));
     program.set("u_lost", static_cast<float>(state_->jets.lost_mm3()));
     pass.draw_fullscreen();
 }

@@ -13,7 +13,6 @@ namespace {
 constexpr int tile_side = 32;  // a multiple of a block's
 // A drop moves two texels in a step at most, and the film that it leaves one: blood_mark.vert.
 constexpr int steps_per_plan = 4;
-constexpr int points_per_drop = 2;  // as blood_mark.vert, for blocks
 // How far across a seam blood goes until then, beyond where it lies or gutters lead.
 constexpr int past_seam = 4;
 constexpr float steps_per_look = 8.0F;  // at most
@@ -199,10 +198,14 @@ void BloodBlocks::expect(std::span<const glm::vec4> places) {
     }
 }
 
-void BloodBlocks::mark(const Pass& pass, const BloodMedium& medium, const gl::Texture& drops, int first,
-                       int count, Squares squares) const {
+int BloodBlocks::points_of(Squares squares) {
+    return squares == Squares::blocks ? 2 : 1;  // as blood_mark.vert
+}
+
+const gl::Program& BloodBlocks::begin_mark(const Pass& pass, const BloodMedium& medium, BloodShader shader,
+                                           const gl::Texture& drops, Squares squares) const {
     const bool blockwise = squares == Squares::blocks;
-    const gl::Program& program = use(pass, BloodShader::mark_of_drops);
+    const gl::Program& program = use(pass, shader);
     bind(pass, program, "u_drops", drops);
     pass.bind(program, "u_metric", "metric");
     pass.bind(program, "u_gravity", "gravity");
@@ -210,23 +213,32 @@ void BloodBlocks::mark(const Pass& pass, const BloodMedium& medium, const gl::Te
     program.set("u_flow", medium.flow);
     program.set("u_strength", medium.strength);
     program.set("u_steps", static_cast<float>(steps_per_plan));
-    program.set("u_first", first);
     program.set("u_tile_count", glm::ivec2(blockwise ? blocks_ : tiles_));
     program.set("u_film_size", glm::vec2(static_cast<float>(size_)));
     program.set("u_blockwise", blockwise);
     draw_into(pass, blockwise ? held_target_[now_] : marks_target_[now_],
               blockwise ? drop_mark_state : mark_state);
-    pass.draw_generated(GL_POINTS, blockwise ? points_per_drop * count : count, 1);
+    return program;
+}
+
+void BloodBlocks::mark_added(const Pass& pass, const BloodMedium& medium, const Blood& blood,
+                             const DropRange& added, Squares squares) const {
+    const gl::Program& program = begin_mark(pass, medium, BloodShader::mark_of_drops, blood.drops, squares);
+    blood.groups.bind(pass, program, added);
+    pass.draw_generated(GL_POINTS, static_cast<int>(added.count) * points_of(squares), 1);
 }
 
 void BloodBlocks::mark_alive(const Pass& pass, const BloodMedium& medium, const Blood& blood,
                              Squares squares) const {
-    if (blood.alive.count > 0) {
-        mark(pass, medium, blood.drops, static_cast<int>(blood.alive.first % blood.ring),
-             static_cast<int>(blood.alive.count), squares);
+    if (blood.groups.count() > 0) {
+        const gl::Program& program =
+            begin_mark(pass, medium, BloodShader::mark_of_drops, blood.drops, squares);
+        blood.groups.bind(pass, program);
+        pass.draw_generated(GL_POINTS, blood.groups.count() * points_of(squares), 1);
     }
     if (expected_count_ > 0) {
-        mark(pass, medium, expected_.texture(), 0, expected_count_, squares);
+        (void)begin_mark(pass, medium, BloodShader::mark_of_places, expected_.texture(), squares);
+        pass.draw_generated(GL_POINTS, expected_count_ * points_of(squares), 1);
     }
 }
 
@@ -305,15 +317,14 @@ void BloodBlocks::look(const Pass& pass, const BloodMedium& medium, const Blood&
 
 void BloodBlocks::add_drops(const Pass& pass, const BloodMedium& medium, const Blood& blood,
                             const DropRange& added) {
-    const int first = static_cast<int>(added.first % blood.ring);
-    mark(pass, medium, blood.drops, first, static_cast<int>(added.count), Squares::tiles);
-    mark(pass, medium, blood.drops, first, static_cast<int>(added.count), Squares::blocks);
+    mark_added(pass, medium, blood, added, Squares::tiles);
+    mark_added(pass, medium, blood, added, Squares::blocks);
     reach(pass);
     steps_planned_ = 0;
 }
 
 void BloodBlocks::before_step(const Pass& pass, const BloodMedium& medium, const Blood& blood) {
-    if (steps_planned_ <= 0 && blood.alive.count > 0) {
+    if (steps_planned_ <= 0 && blood.groups.count() > 0) {
         plan(pass, medium, blood);
     }
     --steps_planned_;

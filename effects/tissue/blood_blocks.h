@@ -9,6 +9,8 @@
 #include <glm/glm.hpp>
 
 #include "effects/tissue/blood_medium.h"
+#include "effects/tissue/blood_programs.h"
+#include "effects/tissue/drop_groups.h"
 #include "effects/tissue/list_texture.h"
 #include "effects/tissue/seam_links.h"
 #include "engine/core/image.h"
@@ -36,8 +38,7 @@ class BloodBlocks {
         const gl::Texture& film;
         const gl::Texture& film_before;  ///< one step ago
         const gl::Texture& drops;
-        DropRange alive;
-        std::int64_t ring = 1;  ///< drops that there is room for
+        const DropGroups& groups;
     };
     enum class Drawn {
         cells,    ///< to be stepped, those with cells
@@ -82,8 +83,14 @@ class BloodBlocks {
     enum class Squares { tiles, blocks };
     void pair_tiles(std::span<const SeamLink> links, std::span<const SeamJump> jumps);
     void pair_blocks(std::span<const SeamLink> links, std::span<const SeamJump> jumps);
-    void mark(const Pass& pass, const BloodMedium& medium, const gl::Texture& drops, int first, int count,
-              Squares squares) const;
+    /// For each drop.
+    [[nodiscard]] static int points_of(Squares squares);
+    /// Puts a program in use that marks what its drops reach, and binds what it marks.
+    [[nodiscard]] const gl::Program& begin_mark(const Pass& pass, const BloodMedium& medium,
+                                                BloodShader shader, const gl::Texture& drops,
+                                                Squares squares) const;
+    void mark_added(const Pass& pass, const BloodMedium& medium, const Blood& blood, const DropRange& added,
+                    Squares squares) const;
     void mark_alive(const Pass& pass, const BloodMedium& medium, const Blood& blood, Squares squares) const;
     void reach(const Pass& pass) const;
     void plan(const Pass& pass, const BloodMedium& medium, const Blood& blood);

@@ -27,6 +27,10 @@ constexpr double latest_s = 1.0e9;
 constexpr std::size_t few_wounds = 16;
 // Drops of a jet in those of a wound: it is finer.
 constexpr double jet_drop_share = 0.25;
+// Where drops of a jet come down no plan has looked, so that they ask for one: they wait for each other, as
+// many steps as a plan holds for, and no longer than is seen.
+constexpr std::int64_t steps_per_landing = 4;
+constexpr double longest_landing_s = 1.0 / 30.0;
 
 std::int64_t step_at(double time_s, double steps_per_s) {
     // A frame's time that should lie on the grid may miss it by its own rounding.
@@ -146,7 +150,7 @@ Work BloodEffect::prepare(Prepare& prepare) {
     const double rate = params_.liquid.steps_per_s;
     target_step_ = step_at(frame.time_s, rate);
     if (!state.begun || target_step_ < state.step || state.steps_per_s != rate) {
-        state.begin_anew(target_step_, rate, params_.liquid.drop_life_s);
+        state.begin_anew(target_step_, rate);
         state.bled = state.moving = prepare.has("spill");
     }
     const auto gap = std::max(static_cast<std::int64_t>(longest_gap_s * rate), std::int64_t{1});
@@ -269,7 +273,7 @@ void BloodEffect::update_surface(const Pass& pass) {
     if (state.bled) {
         state.moving = true;
         expect_drops();
-        state.gpu->look_at_tiles(pass, medium_, state.ring.alive(), true);
+        state.gpu->look_at_tiles(pass, medium_, state.ring, true);
         state.looked_at = state.step;
         state.looked_run = state.steps_run;
         state.disturbed_at = ++state.looks + 1;
@@ -318,6 +322,11 @@ void BloodEffect::collect_drops(std::int64_t step) {
         }
     }
     fly(dt);
+    const auto wait = static_cast<std::int64_t>(longest_landing_s / dt + 1e-6);
+    if (step % std::clamp<std::int64_t>(wait, 1, steps_per_landing) == 0) {
+        spawns_.insert(spawns_.end(), state_->landed.begin(), state_->landed.end());
+        state_->landed.clear();
+    }
     for (DropSpawn& spawn : spawns_) {
         spawn.seed = static_cast<float>(state_->seed++ & 0xffffffU);
     }
@@ -332,7 +341,7 @@ void BloodEffect::fly(double dt) {
         return;
     }
     update_tree();
-    state_->jets.step(tree_, gravity_mm_s2(), dt, spawns_);
+    state_->jets.step(tree_, gravity_mm_s2(), dt, state_->landed);
     state_->bled = state_->moving = true;
     state_->disturbed_at = state_->looks + 1;
 }
@@ -361,14 +370,14 @@ void BloodEffect::run_step(const Pass& pass) {
     const std::int64_t step = state.step;
     set_tools(step);
     collect_drops(step);
-    state.ring.pass_to(state.steps_run++);
+    ++state.steps_run;
     // Two looks without a step between them would find that nothing has changed.
     // Gaps between frames may leave out steps at which a look is due.
     const bool due = step != state.looked_at &&
                      (step % steps_per_look == 0 || state.steps_run - 1 - state.looked_run >= steps_per_look);
     if (due || medium_.tools.size() != state.tool_count) {
         expect_drops();
-        state.gpu->look_at_tiles(pass, medium_, state.ring.alive(), !medium_.tools.empty());
+        state.gpu->look_at_tiles(pass, medium_, state.ring, !medium_.tools.empty());
         state.looked_at = step;
         state.looked_run = state.steps_run - 1;
         ++state.looks;
@@ -379,7 +388,7 @@ void BloodEffect::run_step(const Pass& pass) {
     }
     state.tool_count = medium_.tools.size();
     spawn(pass);
-    state.gpu->step(pass, medium_, state.ring.alive(), step);
+    state.gpu->step(pass, medium_, state.ring, step);
     ++state.step;
 }
 
@@ -405,9 +414,9 @@ void BloodEffect::draw(const Pass& pass) {
         }
         ++state.version;
         if (const auto still = state.gpu->all_still();
-            still && *still >= state.disturbed_at && state.jets.particles().empty()) {
+            still && *still >= state.disturbed_at && state.jets.particles().empty() && state.landed.empty()) {
             state.moving = false;
-            state.ring.forget();
+            state.ring.clear();
         }
         // Only where nothing bleeds: what comes back is a picture in memory.
         if (state.moving && !bleeds(target_step_ - 1, target_step_) && state.looks >= state.disturbed_at) {
@@ -422,7 +431,7 @@ void BloodEffect::show(const Pass& pass) {
     using Shown = BloodGpu::Shown;
     const bool same = shown_version_ != 0 && shown_version_ == state.shown_version;
     const Shown before = !pass.kept() ? Shown::nothing : same ? Shown::last : Shown::unknown;
-    state.gpu->begin_picture(pass, medium_, state.ring.alive(), before);
+    state.gpu->begin_picture(pass, medium_, before);
     pass.bind_target();  // the steps draw elsewhere
     const gl::Program& program = pass.use(programs_.size() - 1);
     program.set("u_extinction", glm::vec3(params_.look.extinction_per_mm));

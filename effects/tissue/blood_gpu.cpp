@@ -10,7 +10,6 @@
 namespace viscera::tissue {
 namespace {
 
-constexpr int ring_width = 256;
 constexpr int deposit_points = 4;
 constexpr int cap_points = 5;  // as blood_cap.vert
 
@@ -38,7 +37,8 @@ BloodGpu::BloodGpu(const gl::Functions& gl, int size, int max_drops)
       blocks_(gl, size),
       film_(pair_of(gl, size, size, "film of blood")),
       relief_(gl::Texture::make_2d(gl, size, size, PixelFormat::r32f, "relief of blood")),
-      drops_(pair_of(gl, ring_width, (max_drops + ring_width - 1) / ring_width, "drops of blood")),
+      groups_(gl, max_drops),
+      drops_(pair_of(gl, groups_.width(), groups_.height(), "drops of blood")),
       deposit_(gl::Texture::make_2d(gl, drops_[0].width(), drops_[0].height(), PixelFormat::rgba32f,
                                     "what drops leave behind")),
       ledger_(
@@ -51,12 +51,8 @@ BloodGpu::BloodGpu(const gl::Functions& gl, int size, int max_drops)
                     target_of(gl, drops_[1], ledger_, "new drops of blood")},
       relief_target_(gl, relief_, "relief of blood") {}
 
-std::int64_t BloodGpu::capacity() const {
-    return static_cast<std::int64_t>(ring_width) * drops_[0].height();
-}
-
-BloodBlocks::Blood BloodGpu::blood(const DropRange& alive) const {
-    return {film(), film_[1 - film_now_], drops(), alive, capacity()};
+BloodBlocks::Blood BloodGpu::blood() const {
+    return {film(), film_[1 - film_now_], drops(), groups_};
 }
 
 void BloodGpu::bind_place(const Pass& pass, const gl::Program& program) const {
@@ -145,8 +141,10 @@ void BloodGpu::find_seams(const Pass& pass) {
     blocks_.lie_on(position, links, jumps);
 }
 
-void BloodGpu::look_at_tiles(const Pass& pass, const BloodMedium& medium, const DropRange& alive, bool wake) {
-    blocks_.look(pass, medium, blood(alive), wake);
+void BloodGpu::look_at_tiles(const Pass& pass, const BloodMedium& medium, DropRing& ring, bool wake) {
+    groups_.update(ring);
+    groups_.ask(pass, ring, drops(), drops_[1 - drops_now_]);
+    blocks_.look(pass, medium, blood(), wake);
     // A block that is no longer stepped must be the same in both textures, which take turns.
     const gl::Program& copy = use(pass, BloodShader::settle);
     bind(pass, copy, "u_film", film());
@@ -154,39 +152,43 @@ void BloodGpu::look_at_tiles(const Pass& pass, const BloodMedium& medium, const 
     blocks_.cover(pass, copy, BloodBlocks::Drawn::settled);
 }
 
-void BloodGpu::deposit(const Pass& pass, const BloodMedium& medium, const DropRange& range,
-                       const gl::Texture& source, bool whole, std::int64_t step) const {
+const gl::Program& BloodGpu::use_deposit(const Pass& pass, const BloodMedium& medium,
+                                         const gl::Texture& source, const gl::Texture& areas) const {
     const gl::Program& program = use(pass, BloodShader::deposited);
-    bind_place(pass, program);
     blocks_.bind_plan(pass, program);
+    bind(pass, program, "u_film", areas);
+    pass.bind(program, "u_right", "flow_right");
     bind(pass, program, "u_deposit", source);
     pass.bind(program, "u_metric", "metric");
     set_medium(program, medium);
-    program.set("u_first", static_cast<int>(range.first % capacity()));
+    return program;
+}
+
+void BloodGpu::deposit(const Pass& pass, const BloodMedium& medium, std::int64_t step) const {
+    const gl::Program& program = use_deposit(pass, medium, deposit_, film());
+    groups_.bind(pass, program);
     program.set("u_salt", static_cast<int>(step & 0xffffff));
-    program.set("u_whole", whole);
-    pass.draw_generated(GL_POINTS, static_cast<int>(range.count) * deposit_points, 1);
+    program.set("u_whole", false);
+    draw_into(pass, film_target_[1 - film_now_], gl::add_blend_state);
+    pass.draw_generated(GL_POINTS, groups_.count() * deposit_points, 1);
+}
+
+void BloodGpu::give_up(const Pass& pass, const BloodMedium& medium, const DropRange& evicted) const {
+    // Into the texture that is read next: what is added to it is owed to the film in the next step. The
+    // other one, which stands for the areas here, has the same.
+    const gl::Program& program = use_deposit(pass, medium, drops(), film_[1 - film_now_]);
+    groups_.bind(pass, program, evicted);
+    program.set("u_salt", 0);
+    program.set("u_whole", true);
+    draw_into(pass, film_target_[film_now_], gl::add_blend_state);
+    pass.draw_generated(GL_POINTS, static_cast<int>(evicted.count) * deposit_points, 1);
 }
 
 void BloodGpu::spawn(const Pass& pass, const BloodMedium& medium, std::span<const DropSpawn> spawns,
                      const DropRange& evicted) {
     if (evicted.count > 0) {
-        blocks_.add_drops(pass, medium, blood({}), evicted);
-        // Into the texture that is read next: what is added to it is owed to the film in the next step. The
-        // other one, which stands for the areas here, has the same.
-        const gl::Texture& areas = film_[1 - film_now_];
-        const gl::Program& program = use(pass, BloodShader::deposited);
-        blocks_.bind_plan(pass, program);
-        pass.bind(program, "u_right", "flow_right");
-        bind(pass, program, "u_film", areas);
-        bind(pass, program, "u_deposit", drops());
-        pass.bind(program, "u_metric", "metric");
-        set_medium(program, medium);
-        program.set("u_first", static_cast<int>(evicted.first % capacity()));
-        program.set("u_salt", 0);
-        program.set("u_whole", true);
-        draw_into(pass, film_target_[film_now_], gl::add_blend_state);
-        pass.draw_generated(GL_POINTS, static_cast<int>(evicted.count) * deposit_points, 1);
+        blocks_.add_drops(pass, medium, blood(), evicted);
+        give_up(pass, medium, evicted);
     }
     spawn_items_.clear();
     for (const DropSpawn& drop : spawns) {
@@ -203,37 +205,17 @@ void BloodGpu::spawn(const Pass& pass, const BloodMedium& medium, std::span<cons
         pass.bind(program, "u_energy", "energy");
         program.set("u_sealed", medium.sealed_energy);
     }
-    program.set("u_ring", glm::ivec2(ledger_.width(), ledger_.height()));
+    program.set("u_ring", glm::vec2(groups_.width(), groups_.height()));
     draw_into(pass, spawn_target_[drops_now_], spawn_state);
     pass.draw_generated(GL_POINTS, static_cast<int>(spawns.size()), 1);
     if (!std::ranges::all_of(spawns, &DropSpawn::expected)) {
         blocks_.add_drops(
-            pass, medium, blood({}),
+            pass, medium, blood(),
             {static_cast<std::int64_t>(spawns[0].slot), static_cast<std::int64_t>(spawns.size())});
     }
 }
 
-void BloodGpu::draw_rows(const Pass& pass, const DropRange& range) const {
-    const std::int64_t first_row = range.first % capacity() / ring_width;
-    const std::int64_t last_row = (range.first + range.count - 1) % capacity() / ring_width;
-    const std::int64_t rows = drops_[0].height();
-    const auto band = [&](std::int64_t from, std::int64_t to) {
-        gl::RasterState state = gl::overwrite_state;
-        state.scissor = gl::Rect{0, static_cast<int>(from), ring_width, static_cast<int>(to - from)};
-        gl::apply(pass.gl(), state, {0, 0, ring_width, static_cast<int>(rows)});
-        pass.draw_fullscreen();
-    };
-    if (range.count >= capacity() - ring_width) {
-        band(0, rows);
-    } else if (first_row <= last_row) {
-        band(first_row, last_row + 1);
-    } else {
-        band(first_row, rows);
-        band(0, last_row + 1);
-    }
-}
-
-void BloodGpu::move_drops(const Pass& pass, const BloodMedium& medium, const DropRange& alive) {
+void BloodGpu::move_drops(const Pass& pass, const BloodMedium& medium) {
     const gl::Program& program =
         use(pass, medium.tools.empty() ? BloodShader::move : BloodShader::move_tools);
     bind_place(pass, program);
@@ -242,8 +224,8 @@ void BloodGpu::move_drops(const Pass& pass, const BloodMedium& medium, const Dro
     pass.bind(program, "u_gravity", "gravity");
     set_medium(program, medium);
     set_tools(pass, program, medium);
-    drops_target_[1 - drops_now_].bind();
-    draw_rows(pass, alive);
+    draw_into(pass, drops_target_[1 - drops_now_], {.program_point_size = true});
+    groups_.cover(pass, program);
     drops_now_ = 1 - drops_now_;
 }
 
@@ -288,25 +270,25 @@ void BloodGpu::step_film(const Pass& pass, const BloodMedium& medium) const {
     }
 }
 
-void BloodGpu::step(const Pass& pass, const BloodMedium& medium, const DropRange& alive, std::int64_t step) {
-    blocks_.before_step(pass, medium, blood(alive));
-    if (alive.count > 0) {
-        move_drops(pass, medium, alive);
+void BloodGpu::step(const Pass& pass, const BloodMedium& medium, DropRing& ring, std::int64_t step) {
+    groups_.update(ring);
+    const bool drops_live = groups_.count() > 0;
+    blocks_.before_step(pass, medium, blood());
+    if (drops_live) {
+        move_drops(pass, medium);
     }
     step_film(pass, medium);
-    if (alive.count > 0) {
-        draw_into(pass, film_target_[1 - film_now_], gl::add_blend_state);
-        deposit(pass, medium, alive, deposit_, false, step);
+    if (drops_live) {
+        deposit(pass, medium, step);
     }
     film_now_ = 1 - film_now_;
 }
 
-void BloodGpu::begin_picture(const Pass& pass, const BloodMedium& medium, const DropRange& alive,
-                             Shown before) {
+void BloodGpu::begin_picture(const Pass& pass, const BloodMedium& medium, Shown before) {
     if (before == Shown::unknown) {
         blocks_.forget_picture(pass);
     }
-    if (alive.count <= 0) {
+    if (groups_.count() == 0) {
         return;
     }
     const gl::Program& program = use(pass, BloodShader::cap);
@@ -316,11 +298,11 @@ void BloodGpu::begin_picture(const Pass& pass, const BloodMedium& medium, const 
     pass.bind(program, "u_position", "position");
     pass.bind(program, "u_metric", "metric");
     set_medium(program, medium);
-    program.set("u_first", static_cast<int>(alive.first % capacity()));
+    groups_.bind(pass, program);
     gl::RasterState state = gl::max_blend_state;
     state.program_point_size = true;
     draw_into(pass, relief_target_, state);
-    pass.draw_generated(GL_POINTS, cap_points * static_cast<int>(alive.count), 1);
+    pass.draw_generated(GL_POINTS, cap_points * groups_.count(), 1);
 }
 
 }  // namespace viscera::tissue

@@ -30,7 +30,7 @@ class BloodGpu {
     BloodGpu(const gl::Functions& gl, int size, int max_drops);
 
     [[nodiscard]] int size() const { return size_; }
-    [[nodiscard]] std::int64_t capacity() const;
+    [[nodiscard]] std::int64_t capacity() const { return groups_.capacity(); }
 
     /// The surface is new or has moved, or gravity has turned. `empty`: nothing lies on it yet.
     void take_surface(const Pass& pass, const BloodMedium& medium, bool empty);
@@ -39,11 +39,11 @@ class BloodGpu {
     /// Where drops may appear before the next look: see BloodBlocks.
     void expect(std::span<const glm::vec4> places) { blocks_.expect(places); }
     /// Looks which tiles have come to rest and which are to be stepped from now on.
-    void look_at_tiles(const Pass& pass, const BloodMedium& medium, const DropRange& alive, bool wake);
+    void look_at_tiles(const Pass& pass, const BloodMedium& medium, DropRing& ring, bool wake);
     /// New drops; those that stood at their places become film first.
     void spawn(const Pass& pass, const BloodMedium& medium, std::span<const DropSpawn> drops,
                const DropRange& evicted);
-    void step(const Pass& pass, const BloodMedium& medium, const DropRange& alive, std::int64_t step);
+    void step(const Pass& pass, const BloodMedium& medium, DropRing& ring, std::int64_t step);
     /// What the picture of the blood holds before it is drawn.
     enum class Shown {
         last,     ///< what was drawn before the last end_picture()
@@ -51,7 +51,7 @@ class BloodGpu {
         unknown,
     };
     /// Finds how high the blood stands.
-    void begin_picture(const Pass& pass, const BloodMedium& medium, const DropRange& alive, Shown before);
+    void begin_picture(const Pass& pass, const BloodMedium& medium, Shown before);
     /// Draws over each block whose look may have changed, with the program in use and into what is bound.
     void cover_changed(const Pass& pass, const gl::Program& program, Shown before) const;
     /// The picture has been drawn: changes count from now on.
@@ -67,16 +67,17 @@ class BloodGpu {
     [[nodiscard]] const gl::Texture& ledger() const { return ledger_; }
 
   private:
-    [[nodiscard]] BloodBlocks::Blood blood(const DropRange& alive) const;
+    [[nodiscard]] BloodBlocks::Blood blood() const;
     void bind_place(const Pass& pass, const gl::Program& program) const;
     void set_medium(const gl::Program& program, const BloodMedium& medium) const;
     void set_tools(const Pass& pass, const gl::Program& program, const BloodMedium& medium) const;
-    void deposit(const Pass& pass, const BloodMedium& medium, const DropRange& range,
-                 const gl::Texture& source, bool whole, std::int64_t step) const;
-    void move_drops(const Pass& pass, const BloodMedium& medium, const DropRange& alive);
+    void deposit(const Pass& pass, const BloodMedium& medium, std::int64_t step) const;
+    void give_up(const Pass& pass, const BloodMedium& medium, const DropRange& evicted) const;
+    [[nodiscard]] const gl::Program& use_deposit(const Pass& pass, const BloodMedium& medium,
+                                                 const gl::Texture& source, const gl::Texture& areas) const;
+    void move_drops(const Pass& pass, const BloodMedium& medium);
     void cross_seams(const Pass& pass, const BloodMedium& medium) const;
     void step_film(const Pass& pass, const BloodMedium& medium) const;
-    void draw_rows(const Pass& pass, const DropRange& range) const;
 
     const gl::Functions* gl_;
     int size_ = 0;
@@ -86,6 +87,7 @@ class BloodGpu {
     /// Height of film and drops [mm], -1 where there is no surface: of the film as it was stepped last, of
     /// drops as they were drawn last.
     gl::Texture relief_;
+    DropGroups groups_;
     std::array<gl::Texture, 2> drops_;
     gl::Texture deposit_;
     ListTexture spawn_;

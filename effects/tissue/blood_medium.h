@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include <glm/glm.hpp>
@@ -32,12 +31,6 @@ struct DropSpawn {
     /// UV of the tissue that decides whether it comes; negative: the place in which it appears does.
     glm::vec2 sealed_at{-1.0F};
     bool expected = false;  ///< the blocks there are known to be stepped: BloodBlocks::expect()
-};
-
-/// Drops [first, first + count) of the ring.
-struct DropRange {
-    std::int64_t first = 0;
-    std::int64_t count = 0;
 };
 
 }  // namespace viscera::tissue

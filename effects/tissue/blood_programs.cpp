@@ -7,6 +7,7 @@ namespace viscera::tissue {
 std::vector<ProgramDesc> blood_programs() {
     const char* whole = "common/fullscreen.vert";
     const char* tile = "tissue/blood_tile.vert";
+    const char* groups = "tissue/drop_groups.vert";
     return {{whole, "tissue/blood_start.frag", {}},
             {whole, "tissue/blood_start.frag", {"SPILL"}},
             {whole, "tissue/blood_ground.frag", {}},
@@ -19,8 +20,8 @@ std::vector<ProgramDesc> blood_programs() {
             {tile, "tissue/blood_film.frag", {"STEP", "TOOLS", "SEAMS"}},
             {tile, "tissue/blood_gutter.frag", {}},
             {"tissue/blood_seam.vert", "tissue/blood_seam.frag", {}},
-            {whole, "tissue/blood_move.frag", {}},
-            {whole, "tissue/blood_move.frag", {"TOOLS"}},
+            {groups, "tissue/blood_move.frag", {}},
+            {groups, "tissue/blood_move.frag", {"TOOLS"}},
             {"tissue/blood_deposit.vert", "tissue/blood_add.frag", {}},
             {"tissue/blood_spawn.vert", "tissue/blood_spawn.frag", {}},
             {"tissue/blood_spawn.vert", "tissue/blood_spawn.frag", {"ENERGY"}},
@@ -29,11 +30,13 @@ std::vector<ProgramDesc> blood_programs() {
             {whole, "tissue/blood_reach.frag", {}},
             {whole, "tissue/blood_near.frag", {}},
             {"tissue/blood_mark.vert", "tissue/blood_mark.frag", {}},
+            {"tissue/blood_mark.vert", "tissue/blood_mark.frag", {"PLACES"}},
             {"tissue/blood_mark.vert", "tissue/blood_mark.frag", {"SEAMS"}},
             {whole, "tissue/blood_across.frag", {}},
             {tile, "tissue/blood_copy.frag", {"SETTLED"}},
             {whole, "tissue/blood_copy.frag", {}},
-            {"tissue/blood_cap.vert", "tissue/blood_cap.frag", {}}};
+            {"tissue/blood_cap.vert", "tissue/blood_cap.frag", {}},
+            {whole, "tissue/drop_lives.frag", {}}};
 }
 
 const gl::Program& use(const Pass& pass, BloodShader shader) {

@@ -40,11 +40,13 @@ enum class BloodShader : std::size_t {
     reach,
     near,
     mark_of_drops,
+    mark_of_places,
     mark_of_tiles,
     across,
     settle,
     copy,
     cap,
+    lives,
 };
 
 [[nodiscard]] std::vector<ProgramDesc> blood_programs();

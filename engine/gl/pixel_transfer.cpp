@@ -78,28 +78,36 @@ void ReadBack::start(const Texture& texture, std::uint64_t tag) {
 }
 
 std::optional<ReadBack::Result> ReadBack::poll() {
-    if (pending_.empty()) {
-        return std::nullopt;
+    Result result;
+    return poll(result) ? std::optional(std::move(result)) : std::nullopt;
+}
+
+bool ReadBack::poll(Result& result) {
+    if (pending_.empty() || gl_->ClientWaitSync(pending_.front().fence, 0, 0) == GL_TIMEOUT_EXPIRED) {
+        return false;
     }
-    const GLenum status = gl_->ClientWaitSync(pending_.front().fence, 0, 0);
-    if (status == GL_TIMEOUT_EXPIRED) {
-        return std::nullopt;
-    }
-    return finish();
+    finish(result);
+    return true;
 }
 
 std::optional<ReadBack::Result> ReadBack::wait() {
     if (pending_.empty()) {
         return std::nullopt;
     }
-    return finish();  // mapping waits
+    Result result;
+    finish(result);  // mapping waits
+    return result;
 }
 
-ReadBack::Result ReadBack::finish() {
+void ReadBack::finish(Result& result) {
     Pending pending = std::move(pending_.front());
-    pending_.pop_front();
+    pending_.erase(pending_.begin());
     gl_->DeleteSync(pending.fence);
-    Result result{make_image(pending.width, pending.height, pending.format), pending.tag};
+    result.tag = pending.tag;
+    Image& image = result.image;
+    if (image.width != pending.width || image.height != pending.height || image.format != pending.format) {
+        image = make_image(pending.width, pending.height, pending.format);
+    }
     pending.buffer.bind(GL_COPY_WRITE_BUFFER);
     const void* mapped = gl_->MapBufferRange(
         GL_COPY_WRITE_BUFFER, 0, static_cast<GLsizeiptr>(pending.buffer.bytes()), GL_MAP_READ_BIT);
@@ -111,7 +119,6 @@ ReadBack::Result ReadBack::finish() {
         throw Error(ErrorCode::gl, "read-back", "the driver lost the pixels");
     }
     free_.push_back(std::move(pending.buffer));
-    return result;
 }
 
 }  // namespace viscera::gl

@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <optional>
 #include <vector>
 
@@ -38,6 +37,8 @@ class ReadBack {
     void start(const Texture& texture, std::uint64_t tag);
     /// The oldest, if it has arrived. Never waits.
     [[nodiscard]] std::optional<Result> poll();
+    /// The same into a result whose memory is used again; false: it has not arrived.
+    [[nodiscard]] bool poll(Result& result);
     /// The oldest, waiting for it; none when nothing is under way. Throws Error(gl) when the driver lost it.
     [[nodiscard]] std::optional<Result> wait();
     [[nodiscard]] std::size_t in_flight() const { return pending_.size(); }
@@ -52,10 +53,10 @@ class ReadBack {
         std::uint64_t tag = 0;
     };
     [[nodiscard]] Buffer take_buffer(std::size_t bytes);
-    [[nodiscard]] Result finish();
+    void finish(Result& result);
 
     const Functions* gl_;
-    std::deque<Pending> pending_;
+    std::vector<Pending> pending_;
     std::vector<Buffer> free_;
 };
 

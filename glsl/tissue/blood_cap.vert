@@ -1,12 +1,12 @@
 #version 330 core
 #include "tissue/blood_place.glsl"
 #include "tissue/blood_drop.glsl"
+#include "tissue/drop_ring.glsl"
 // A drop as it is seen: a point around it in texture space, and one for each of four ways in which a seam cuts it. One that is narrower than three texels is
 // drawn as wide as they are, and so much flatter: texels that sample it here and there would show dots.
 uniform sampler2D u_drops;
 uniform sampler2D u_position;
 uniform sampler2D u_metric;
-uniform int u_first;
 flat out vec4 v_cap;      // place [mm], radius [mm]
 flat out float v_height;  // in the middle [mm]
 
@@ -37,9 +37,7 @@ vec3 world_at(vec2 texel) {
 }
 
 void main() {
-    ivec2 ring = textureSize(u_drops, 0);
-    int index = (u_first + gl_VertexID / points) % (ring.x * ring.y);
-    vec4 drop = texelFetch(u_drops, ivec2(index % ring.x, index / ring.x), 0);
+    vec4 drop = texelFetch(u_drops, drop_texel(drop_place(gl_VertexID / points)), 0);
     gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
     gl_PointSize = 1.0;
     v_cap = vec4(0.0);

@@ -2,12 +2,12 @@
 #include "tissue/blood_place.glsl"
 #include "tissue/blood_plan.glsl"
 #include "tissue/blood_drop.glsl"
+#include "tissue/drop_ring.glsl"
 // Lays what drops leave behind onto the film: four points for each drop within its outline, another four in each step, so that in time
 // all of the outline is covered alike. A point changes one texel by the volume over that texel's area: no volume is lost, whatever the
 // map does to lengths.
 uniform sampler2D u_deposit;  // of blood_move.frag; or the drops themselves, which then go into the film as they are
 uniform sampler2D u_metric;
-uniform int u_first;   // of the drops, in the ring
 uniform int u_salt;    // of the step
 uniform bool u_whole;  // u_deposit holds drops
 flat out vec2 v_added;
@@ -15,11 +15,9 @@ flat out vec2 v_added;
 const int points = 4;
 
 void main() {
-    int width = textureSize(u_deposit, 0).x;
-    int count = width * textureSize(u_deposit, 0).y;
-    int index = (u_first + gl_VertexID / points) % count;
+    int index = drop_place(gl_VertexID / points);
     int k = gl_VertexID % points;
-    vec4 deposit = texelFetch(u_deposit, ivec2(index % width, index / width), 0);
+    vec4 deposit = texelFetch(u_deposit, drop_texel(index), 0);
     vec2 size = vec2(textureSize(u_film, 0));
     if (u_whole) {
         deposit.xy *= size;

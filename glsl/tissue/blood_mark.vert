@@ -1,15 +1,17 @@
 #version 330 core
+#include "tissue/list.glsl"
 // Marks by points the tiles and blocks in which drops are, or the tiles across seams from marked ones.
 #ifdef SEAMS
-#include "tissue/list.glsl"
 uniform sampler2D u_pairs;   // one side, other side: x, y each, of tiles that a seam joins
 uniform sampler2D u_marked;
 #else
 #include "tissue/blood_drop.glsl"
 #include "tissue/blood_held.glsl"
-uniform sampler2D u_drops;
+#ifndef PLACES
+#include "tissue/drop_ring.glsl"
+#endif
+uniform sampler2D u_drops;  // with PLACES: a list of drops to come, each as large as the place where it may
 uniform sampler2D u_metric;
-uniform int u_first;
 uniform ivec2 u_tile_count;
 uniform vec2 u_film_size;
 uniform bool u_blockwise;  // blocks that a drop reaches, not the tile that it is in
@@ -35,11 +37,13 @@ void main() {
         gl_Position = vec4(2.0 * (pair.zw + 0.5) / vec2(textureSize(u_marked, 0)) - 1.0, 0.0, 1.0);
     }
 #else
-    ivec2 size = textureSize(u_drops, 0);
     int number = u_blockwise ? gl_VertexID / 2 : gl_VertexID;
     int part = u_blockwise ? gl_VertexID & 1 : 0;
-    int index = (u_first + number) % (size.x * size.y);
-    vec4 drop = texelFetch(u_drops, ivec2(index % size.x, index / size.x), 0);
+#ifdef PLACES
+    vec4 drop = list_item(u_drops, number);
+#else
+    vec4 drop = texelFetch(u_drops, drop_texel(drop_place(number)), 0);
+#endif
     if (drop.z > 0.0) {
         vec2 at = drop.xy * u_film_size;
         vec2 low = floor(at / 32.0);

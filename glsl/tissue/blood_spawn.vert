@@ -2,14 +2,14 @@
 #include "tissue/blood_place.glsl"
 #include "tissue/blood_drop.glsl"
 // New drops, each a point at its place in the ring.
-#include "tissue/list.glsl"
+#include "tissue/drop_ring.glsl"
 uniform sampler2D u_spawn;  // two items for each: u, v, volume [mm^3], radius of the source [mm]; place in the ring, seed, UV that decides
 uniform sampler2D u_metric;
 #ifdef ENERGY
 uniform sampler2D u_energy;
 uniform float u_sealed;  // energy at which tissue no longer bleeds
 #endif
-uniform ivec2 u_ring;  // size of the ring's texture
+uniform vec2 u_ring;  // size of the ring's texture
 flat out vec4 v_drop;
 
 void main() {
@@ -34,7 +34,5 @@ void main() {
     volume *= 1.0 - smoothstep(0.5 * u_sealed, u_sealed, energy);
 #endif
     v_drop = vec4(at.xy / size, volume, 0.0);
-    int place = int(more.x) % (u_ring.x * u_ring.y);
-    ivec2 slot = ivec2(place % u_ring.x, place / u_ring.x);
-    gl_Position = vec4(2.0 * (vec2(slot) + 0.5) / vec2(u_ring) - 1.0, 0.0, 1.0);
+    gl_Position = vec4(2.0 * (vec2(drop_texel(int(more.x))) + 0.5) / u_ring - 1.0, 0.0, 1.0);
 }

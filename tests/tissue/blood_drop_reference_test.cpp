@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -13,9 +14,11 @@ namespace {
 
 using nlohmann::json;
 
-/// Draws the ring of drops of the blood named "blood".
+/// Draws the ring of drops of the blood named "blood", whose state it finds.
 class DropsEffect final : public Effect {
   public:
+    explicit DropsEffect(std::shared_ptr<tissue::BloodState>& state) : state_(state) {}
+
     void visit(ParamVisitor& /*v*/) override {}
     std::vector<Port> ports() const override {
         return {
@@ -25,7 +28,7 @@ class DropsEffect final : public Effect {
              .target = "test.drops",
              .doc = "The ring.",
              .format = PixelFormat::rgba32f,
-             .size = {.width = 256, .height = 1}}};
+             .size = {.width = 256, .height = 16}}};
     }
     std::span<const ProgramDesc> programs() const override { return programs_; }
     Work prepare(Prepare& prepare) override {
@@ -40,17 +43,18 @@ class DropsEffect final : public Effect {
 
   private:
     std::vector<ProgramDesc> programs_{{"common/fullscreen.vert", "tissue/blood_copy.frag", {}}};
-    std::shared_ptr<tissue::BloodState> state_;
+    std::shared_ptr<tissue::BloodState>& state_;
 };
 
 struct Watched {
     std::unique_ptr<Context> context = create_context(Backend::osmesa, {.debug = true});
     Registry registry;
+    std::shared_ptr<tissue::BloodState> state;
     std::unique_ptr<Renderer> renderer;
 
     explicit Watched(json scene) {
         register_all(registry);
-        registry.add("test.drops", "Drops.", [] { return std::make_unique<DropsEffect>(); });
+        registry.add("test.drops", "Drops.", [this] { return std::make_unique<DropsEffect>(state); });
         renderer = std::make_unique<Renderer>(context->proc_address(), registry, RendererOptions{});
         scene["passes"].push_back(pass("drops", "test.drops", json::object()));
         scene["outputs"].push_back("test.drops");
@@ -142,6 +146,51 @@ TEST(BloodDropReference, AWayOverASeamIsTheReferences) {
     EXPECT_GE(crossings, 1);
     EXPECT_LT(worst_px, 2e-4);
     EXPECT_LT(worst_volume, 5e-6);
+}
+
+/// Drops run down a wall and are spent on the way: few of all that have come are drawn, and all that live
+/// are.
+TEST(BloodDropReference, WhatHasGoneIsDrawnNoMore) {
+    BloodStage stage(96);
+    const SurfaceChart chart{.high = {80.0, 80.0},
+                             .origin_px = {8.0, 8.0},
+                             .a_px = {1.0, 0.0},
+                             .b_px = {0.0, 1.0},
+                             .cells = {2, 2}};
+    stage.surface(std::span(&chart, 1), [](glm::dvec2 p) { return glm::dvec3(p.x, 0.0, p.y); });
+    stage.gravity = {{"gravity_m_s2", {0.0, 0.0, -9.80665}}};
+    stage.blood = {{"liquid", {{"drop_mm3", 0.5}, {"max_drops", 4096}}},
+                   {"wounds",
+                    {{{"position_mm", {20.0, 0.0, 60.0}}, {"rate_mm3_s", 150.0}},
+                     {{"position_mm", {60.0, 0.0, 60.0}}, {"rate_mm3_s", 20.0}}}}};
+    Watched watched(stage.scene());
+    std::int64_t most_listed = 0;
+    std::int64_t most_alive = 0;
+    for (int frame = 0; frame <= 360; ++frame) {
+        watched.renderer->render(watched.renderer->still(frame / 60.0));
+        if (frame % 20 != 0 || watched.state == nullptr || watched.state->gpu == nullptr) {
+            continue;
+        }
+        const Image ring = watched.renderer->read("test.drops");
+        const std::span<const int> groups = watched.state->ring.groups();
+        std::int64_t alive = 0;
+        for (int y = 0; y < 16; ++y) {
+            for (int x = 0; x < 256; ++x) {
+                if (ring.at(x, y, 2) > 0.0F) {
+                    ++alive;
+                    EXPECT_TRUE(std::ranges::binary_search(groups, y / 4 * 64 + x / 4)) << x << ' ' << y;
+                }
+            }
+        }
+        most_alive = std::max(most_alive, alive);
+        most_listed = std::max(most_listed, std::ssize(groups) * tissue::DropRing::group_size);
+    }
+    const std::int64_t came = watched.state->ring.head();
+    std::printf("  %d drops came, at most %d lived, at most %d are drawn\n", static_cast<int>(came),
+                static_cast<int>(most_alive), static_cast<int>(most_listed));
+    EXPECT_GT(came, 1500);
+    EXPECT_GT(most_alive, 10);
+    EXPECT_LT(most_listed, came / 3);
 }
 
 }  // namespace

@@ -7,6 +7,20 @@ namespace {
 constexpr double step_goal = 4.0;
 constexpr double steps_per_s = 120.0;
 
+/// The copy that steps are held against.
+void end_scene(SceneText& scene) {
+    scene.target("picture", "rgba32f")
+        .target("copy", "rgba32f")
+        .pass("source", "bench.source", {{"amount", 1.0}}, {{"out", "picture"}})
+        .pass("copy", "bench.copy1", nullptr, {{"a", "picture"}, {"out", "copy"}});
+    // All that blood reads is an output: what is not may lose its texture to another pass, and is made again.
+    for (const char* name : {"tissue.blood_height", "tissue.blood_color", "tissue.blood_normal", "copy",
+                             "tissue.gravity", "tissue.flow_right", "tissue.flow_top", "tissue.position",
+                             "tissue.normal", "tissue.metric", "tissue.seam"}) {
+        scene.output(name);
+    }
+}
+
 /// Blood on a tube that fills the texture, one step of the simulation per frame, beside a plain copy of a
 /// picture of the film's size.
 nlohmann::json blood_scene(Lab& lab, const nlohmann::json& wounds, int max_drops, bool film, bool energy) {
@@ -34,24 +48,14 @@ nlohmann::json blood_scene(Lab& lab, const nlohmann::json& wounds, int max_drops
                   {{"energy", "tissue.energy"}, {"last", "tissue.energy"}})
             .output("tissue.energy");
     }
-    scene
-        .pass("blood", "tissue.blood",
-              {{"mesh", mesh},
-               {"size", size},
-               {"state", "bench" + std::to_string(max_drops) + '_' + std::to_string(wounds.size()) +
-                             (film ? "film" : "") + (energy ? "energy" : "")},
-               {"liquid", {{"steps_per_s", steps_per_s}, {"max_drops", max_drops}}},
-               {"wounds", wounds}})
-        .target("picture", "rgba32f")
-        .target("copy", "rgba32f")
-        .pass("source", "bench.source", {{"amount", 1.0}}, {{"out", "picture"}})
-        .pass("copy", "bench.copy1", nullptr, {{"a", "picture"}, {"out", "copy"}});
-    // All that blood reads is an output: what is not may lose its texture to another pass, and is made again.
-    for (const char* name : {"tissue.blood_height", "tissue.blood_color", "tissue.blood_normal", "copy",
-                             "tissue.gravity", "tissue.flow_right", "tissue.flow_top", "tissue.position",
-                             "tissue.normal", "tissue.metric", "tissue.seam"}) {
-        scene.output(name);
-    }
+    scene.pass("blood", "tissue.blood",
+               {{"mesh", mesh},
+                {"size", size},
+                {"state", "bench" + std::to_string(max_drops) + '_' + std::to_string(wounds.size()) +
+                              (film ? "film" : "") + (energy ? "energy" : "")},
+                {"liquid", {{"steps_per_s", steps_per_s}, {"max_drops", max_drops}}},
+                {"wounds", wounds}});
+    end_scene(scene);
     return scene.json();
 }
 
@@ -62,6 +66,25 @@ nlohmann::json wounds_along(int count, double rate_mm3_s) {
         wounds.push_back({{"position_mm", {0.0, -20.0, z}}, {"rate_mm3_s", rate_mm3_s}});
     }
     return wounds;
+}
+
+/// What is bled and coagulated in assets/scenes/laparoscopy.json, without what shows it, beside the same
+/// copy.
+nlohmann::json laparoscopy(const Lab& lab) {
+    const nlohmann::json whole = lab.scene("laparoscopy.json");
+    nlohmann::json emptied = whole;
+    emptied["shared"]["tissue_size"] = lab.options().width;
+    emptied["passes"] = emptied["outputs"] = nlohmann::json::array();
+    SceneText scene(std::move(emptied));
+    for (const nlohmann::json& pass : whole.at("passes")) {
+        const auto name = pass.at("name").get<std::string>();
+        if (name == "bake" || name == "relief" || name == "gravity" || name == "coagulate" ||
+            name == "blood") {
+            scene.add(pass);
+        }
+    }
+    end_scene(scene);
+    return scene.output("tissue.energy").output("tissue.relief").json();
 }
 
 }  // namespace
@@ -81,6 +104,22 @@ void run_blood(Lab& lab) {
                  .base = stage.pass("copy"),
                  .goal = step_goal});
     };
+    const auto at_work = [&](double time_s) {
+        Stage stage(
+            lab, laparoscopy(lab),
+            {.time_s = 0.0, .step_s = 1.0 / steps_per_s, .warm = static_cast<int>(time_s * steps_per_s)});
+        stage.run();
+        const Samples energy = stage.pass_or_none("coagulate");
+        lab.add({.group = "blood",
+                 .name = "laparoscopy.json at " + std::to_string(static_cast<int>(time_s)) + " s" + at,
+                 .samples = energy.empty() ? stage.pass("blood") : stage.pass("blood") + energy,
+                 .ceiling = "copy of one rgba32f picture of that size",
+                 .base = stage.pass("copy"),
+                 .goal = step_goal});
+    };
+    for (const double time_s : {2.0, 4.0, 6.0, 8.0}) {
+        at_work(time_s);
+    }
     measure("a step, 1 wound after 0.5 s", wounds_along(1, 30.0), 16384, 60);
     measure("the same and 1 contact of energy", wounds_along(1, 30.0), 16384, 60, false, true);
     measure("a step, 4 wounds after 1 s", wounds_along(4, 30.0), 16384, 120);

@@ -33,8 +33,8 @@ Lab::Lab(Context& context, Options options)
     register_bench_effects(registry_);
 }
 
-nlohmann::json Lab::default_scene() const {
-    const std::filesystem::path file = options_.assets / "scenes" / "angiography.json";
+nlohmann::json Lab::scene(std::string_view name) const {
+    const std::filesystem::path file = options_.assets / "scenes" / name;
     std::ifstream stream(file);
     if (!stream) {
         throw Error(ErrorCode::file, file.string(), "cannot be opened; --assets names the folder");

@@ -63,8 +63,9 @@ class Lab {
                 (options_.compute == ComputeUse::automatic && !capabilities_.software));
     }
 
-    /// The default scene as JSON.
-    [[nodiscard]] nlohmann::json default_scene() const;
+    /// One of assets/scenes as JSON, in the bench's resolution.
+    [[nodiscard]] nlohmann::json scene(std::string_view name) const;
+    [[nodiscard]] nlohmann::json default_scene() const { return scene("angiography.json"); }
     /// Frame and `shared` of the default scene, without passes.
     [[nodiscard]] nlohmann::json empty_scene() const;
 

@@ -24,6 +24,11 @@ class SceneText {
                                     {"targets", std::move(targets)}});
         return *this;
     }
+    /// A pass as scenes give it.
+    SceneText& add(nlohmann::json pass) {
+        scene_["passes"].push_back(std::move(pass));
+        return *this;
+    }
     SceneText& target(const std::string& name, std::string_view format, double scale = 1.0) {
         scene_["targets"][name] = {{"format", format}, {"scale", scale}};
         return *this;

@@ -1,0 +1,88 @@
+#include "effects/tissue/drop_groups.h"
+
+#include "effects/tissue/blood_programs.h"
+#include "engine/runtime/pass.h"
+
+namespace viscera::tissue {
+namespace {
+
+constexpr int groups_in_row = 64;  // as glsl/tissue/drop_ring.glsl
+constexpr int group_side = 4;      // the same
+constexpr std::size_t most_questions = 3;
+constexpr int group_size = static_cast<int>(DropRing::group_size);
+
+int groups_for(int drops) {
+    return (drops + group_size - 1) / group_size;
+}
+
+}  // namespace
+
+DropGroups::DropGroups(const gl::Functions& gl, int capacity)
+    : gl_(&gl),
+      capacity_(groups_for(capacity) * group_size),
+      lives_(gl::Texture::make_2d(gl, groups_in_row, (groups_for(capacity) - 1) / groups_in_row + 1,
+                                  PixelFormat::r8, "groups with living drops")),
+      lives_target_(gl, lives_, "groups with living drops"),
+      answers_(gl) {
+    list_.upload(gl, {}, "groups of drops");
+}
+
+int DropGroups::width() const {
+    return lives_.width() * group_side;
+}
+
+int DropGroups::height() const {
+    return lives_.height() * group_side;
+}
+
+void DropGroups::update(DropRing& ring) {
+    while (answers_.poll(answer_)) {
+        ring.hear(answer_.tag, answer_.image.data);
+    }
+    if (listed_version_ == ring.version()) {
+        return;
+    }
+    listed_version_ = ring.version();
+    items_.clear();
+    for (const int group : ring.groups()) {
+        items_.emplace_back(group, 0.0F, 0.0F, 0.0F);
+    }
+    listed_ = static_cast<int>(items_.size());
+    if (listed_ > 0) {
+        list_.upload(*gl_, items_, "groups of drops");
+    }
+}
+
+void DropGroups::ask(const Pass& pass, DropRing& ring, const gl::Texture& drops, const gl::Texture& before) {
+    if (listed_ == 0 || answers_.in_flight() >= most_questions) {
+        return;
+    }
+    const gl::Program& program = use(pass, BloodShader::lives);
+    tissue::bind(pass, program, "u_drops", drops);
+    tissue::bind(pass, program, "u_drops_before", before);
+    draw_into(pass, lives_target_, gl::overwrite_state);
+    pass.draw_fullscreen();
+    answers_.start(lives_, ring.ask());
+}
+
+void DropGroups::bind(const Pass& pass, const gl::Program& program, int first) const {
+    tissue::bind(pass, program, "u_groups", list_.texture());
+    program.set("u_first", first);
+    program.set("u_capacity", capacity_);
+}
+
+void DropGroups::bind(const Pass& pass, const gl::Program& program) const {
+    bind(pass, program, -1);
+}
+
+void DropGroups::bind(const Pass& pass, const gl::Program& program, const DropRange& run) const {
+    bind(pass, program, static_cast<int>(run.first % capacity_));
+}
+
+void DropGroups::cover(const Pass& pass, const gl::Program& program) const {
+    bind(pass, program);
+    program.set("u_size", glm::vec2(width(), height()));
+    pass.draw_generated(GL_POINTS, listed_, 1);
+}
+
+}  // namespace viscera::tissue
