@@ -17,7 +17,7 @@ using nlohmann::json;
 /// Draws the ring of drops of the blood named "blood", whose state it finds.
 class DropsEffect final : public Effect {
   public:
-    explicit DropsEffect(std::shared_ptr<tissue::BloodState>& state) : state_(state) {}
+    explicit DropsEffect(std::weak_ptr<tissue::BloodState>& found) : found_(found) {}
 
     void visit(ParamVisitor& /*v*/) override {}
     std::vector<Port> ports() const override {
@@ -32,7 +32,7 @@ class DropsEffect final : public Effect {
     }
     std::span<const ProgramDesc> programs() const override { return programs_; }
     Work prepare(Prepare& prepare) override {
-        state_ = tissue::BloodState::find(prepare.assets(), "blood");
+        found_ = state_ = tissue::BloodState::find(prepare.assets(), "blood");
         return prepare.has("height") ? Work::all(0) : Work::idle("there is no blood");
     }
     void draw(const Pass& pass) override {
@@ -43,13 +43,14 @@ class DropsEffect final : public Effect {
 
   private:
     std::vector<ProgramDesc> programs_{{"common/fullscreen.vert", "tissue/blood_copy.frag", {}}};
-    std::shared_ptr<tissue::BloodState>& state_;
+    std::weak_ptr<tissue::BloodState>& found_;
+    std::shared_ptr<tissue::BloodState> state_;
 };
 
 struct Watched {
     std::unique_ptr<Context> context = create_context(Backend::osmesa, {.debug = true});
     Registry registry;
-    std::shared_ptr<tissue::BloodState> state;
+    std::weak_ptr<tissue::BloodState> state;  ///< must not outlive the renderer
     std::unique_ptr<Renderer> renderer;
 
     explicit Watched(json scene) {
@@ -171,11 +172,12 @@ TEST(BloodDropReference, WhatHasGoneIsDrawnNoMore) {
         // A step in each frame, so that either of the two textures that take turns is seen.
         for (int frame = 0; frame <= 720; ++frame) {
             watched.renderer->render(watched.renderer->still(frame / 120.0));
-            if (frame % 15 != 0 || watched.state == nullptr || watched.state->gpu == nullptr) {
+            const std::shared_ptr<tissue::BloodState> state = watched.state.lock();
+            if (frame % 15 != 0 || state == nullptr || state->gpu == nullptr) {
                 continue;
             }
             const Image ring = watched.renderer->read("test.drops");
-            const std::span<const int> groups = watched.state->ring.groups();
+            const std::span<const int> groups = state->ring.groups();
             std::int64_t alive = 0;
             for (int y = 0; y < std::max(max_drops / 256, 4); ++y) {
                 for (int x = 0; x < 256; ++x) {
@@ -188,7 +190,7 @@ TEST(BloodDropReference, WhatHasGoneIsDrawnNoMore) {
             most_alive = std::max(most_alive, alive);
             most_listed = std::max(most_listed, std::ssize(groups) * tissue::DropRing::group_size);
         }
-        const std::int64_t came = watched.state->ring.head();
+        const std::int64_t came = watched.state.lock()->ring.head();
         const Image account = watched.renderer->read("tissue.blood_account");
         glm::dvec4 sum{0.0};
         for (int i = 0; i < account.width * account.height; ++i) {
