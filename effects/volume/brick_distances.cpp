@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <experimental/simd>
 #include <utility>
 
@@ -172,7 +173,9 @@ class Rows {
     }
     /// A row that lacks nothing.
     void take_kinds(const std::uint8_t* kinds, std::uint8_t* row) const {
-        copy_lanes(kinds, row, [](const Bricks& kind) { return kind * Bricks(kind_step); });
+        // Shifted, since libstdc++ 12 multiplies bytes as signed words, which overflow.
+        constexpr int kind_bits = std::countr_zero(static_cast<unsigned>(kind_step));
+        copy_lanes(kinds, row, [](const Bricks& kind) { return kind << kind_bits; });
         std::fill_n(row - room, room, row[0]);
         std::fill_n(row + dims_.x, padded_ - dims_.x + room, row[dims_.x - 1]);
     }
