@@ -275,7 +275,7 @@ void BloodEffect::update_surface(const Pass& pass) {
         expect_drops();
         state.gpu->look_at_tiles(pass, medium_, state.ring, true);
         state.looked_at = state.step;
-        state.looked_run = state.steps_run;
+        state.steps_since_look = 0;
         state.disturbed_at = ++state.looks + 1;
     }
 }
@@ -370,16 +370,15 @@ void BloodEffect::run_step(const Pass& pass) {
     const std::int64_t step = state.step;
     set_tools(step);
     collect_drops(step);
-    ++state.steps_run;
     // Two looks without a step between them would find that nothing has changed.
     // Gaps between frames may leave out steps at which a look is due.
-    const bool due = step != state.looked_at &&
-                     (step % steps_per_look == 0 || state.steps_run - 1 - state.looked_run >= steps_per_look);
+    const bool due =
+        step != state.looked_at && (step % steps_per_look == 0 || state.steps_since_look >= steps_per_look);
     if (due || medium_.tools.size() != state.tool_count) {
         expect_drops();
         state.gpu->look_at_tiles(pass, medium_, state.ring, !medium_.tools.empty());
         state.looked_at = step;
-        state.looked_run = state.steps_run - 1;
+        state.steps_since_look = 0;
         ++state.looks;
     }
     if (!medium_.tools.empty() || state.tool_count != 0) {
@@ -390,6 +389,7 @@ void BloodEffect::run_step(const Pass& pass) {
     spawn(pass);
     state.gpu->step(pass, medium_, state.ring, step);
     ++state.step;
+    ++state.steps_since_look;
 }
 
 void BloodEffect::draw(const Pass& pass) {

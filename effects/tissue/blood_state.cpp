@@ -23,7 +23,7 @@ void BloodState::begin_anew(std::int64_t at, double rate) {
     surface_key = 0;
     shown_version = 0;
     ++version;
-    steps_run = looked_run = 0;
+    steps_since_look = 0;
     ring.clear();
     meters.clear();
     expected.clear();

@@ -17,10 +17,9 @@ namespace viscera::tissue {
 struct BloodState {
     std::unique_ptr<BloodGpu> gpu;
     bool begun = false;
-    bool bled = false;           ///< blood is or was somewhere
-    bool moving = false;         ///< something may change without a source
-    std::int64_t step = 0;       ///< the next one, on the grid of times
-    std::int64_t steps_run = 0;  ///< gaps between frames do not count
+    bool bled = false;      ///< blood is or was somewhere
+    bool moving = false;    ///< something may change without a source
+    std::int64_t step = 0;  ///< the next one, on the grid of times
     double steps_per_s = 0.0;
     std::uint64_t version = 0;  ///< of what it shows
     std::uint64_t shown_version =
@@ -33,7 +32,7 @@ struct BloodState {
     std::uint64_t looks = 0;         ///< at the tiles
     std::uint64_t disturbed_at = 0;  ///< the look before which answers are too old
     std::int64_t looked_at = 0;      ///< step of the last look
-    std::int64_t looked_run = 0;     ///< the same, counted as `steps_run`
+    std::int64_t steps_since_look = 0;
     std::size_t tool_count = 0;
     DropRing ring;
     std::vector<DropMeter> meters;

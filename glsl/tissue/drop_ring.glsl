@@ -6,6 +6,11 @@ uniform int u_capacity;
 
 const int group_side = 4;
 
+/// Groups lie in rows of 64.
+int group_at(ivec2 place) {
+    return place.x + (place.y << 6);
+}
+
 /// Corner of a group.
 ivec2 group_texel(int group) {
     return group_side * ivec2(group & 63, group >> 6);

@@ -191,20 +191,14 @@ TEST(BloodDropReference, WhatHasGoneIsDrawnNoMore) {
             most_listed = std::max(most_listed, std::ssize(groups) * tissue::DropRing::group_size);
         }
         const std::int64_t came = watched.state.lock()->ring.head();
-        const Image account = watched.renderer->read("tissue.blood_account");
-        glm::dvec4 sum{0.0};
-        for (int i = 0; i < account.width * account.height; ++i) {
-            for (int c = 0; c < 4; ++c) {
-                sum[c] += static_cast<double>(account.at(i % account.width, i / account.width, c));
-            }
-        }
+        const BloodAccount account = account_of(watched.renderer->read("tissue.blood_account"));
         std::printf("  %d drops came, at most %d lived, at most %d are drawn; kept / given - 1 = %.1e\n",
                     static_cast<int>(came), static_cast<int>(most_alive), static_cast<int>(most_listed),
-                    (sum.y + sum.z + sum.w) / sum.x - 1.0);
+                    account.kept() / account.given - 1.0);
         EXPECT_GT(came, 1500);
         EXPECT_GT(most_alive, 10);
         EXPECT_LT(most_listed, came / 3);
-        EXPECT_NEAR((sum.y + sum.z + sum.w) / sum.x, 1.0, 1e-5);
+        EXPECT_NEAR(account.kept() / account.given, 1.0, 1e-5);
     }
 }
 

@@ -133,8 +133,8 @@ const FrameReport& BloodStage::run(double from_s, double to_s, double step_s, co
     return frame(to_s, values);
 }
 
-BloodAccount BloodStage::account() {
-    const std::vector<float> values = to_floats(read("tissue.blood_account"));
+BloodAccount account_of(const Image& picture) {
+    const std::vector<float> values = to_floats(picture);
     BloodAccount sum;
     for (std::size_t i = 0; i + 3 < values.size(); i += 4) {
         sum.given += static_cast<double>(values[i]);

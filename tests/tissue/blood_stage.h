@@ -44,6 +44,9 @@ struct BloodAccount {
     [[nodiscard]] double kept() const { return film + drops + gone; }
 };
 
+/// Of what tissue.blood_account has drawn.
+[[nodiscard]] BloodAccount account_of(const Image& picture);
+
 /// Bake, gravity and blood on one surface.
 class BloodStage {
   public:
@@ -69,7 +72,7 @@ class BloodStage {
     const FrameReport& frame(double time_s, const HostValues* values = nullptr);
     [[nodiscard]] Image read(std::string_view target) { return stage_.renderer().read(target); }
     [[nodiscard]] double time_s() const { return time_s_; }  ///< of the last frame
-    [[nodiscard]] BloodAccount account();
+    [[nodiscard]] BloodAccount account() { return account_of(read("tissue.blood_account")); }
     /// The bake as it was drawn, for the reference.
     [[nodiscard]] reference::TissueSurface baked();
     [[nodiscard]] Stage& stage() { return stage_; }

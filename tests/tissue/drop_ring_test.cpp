@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <deque>
-#include <map>
 #include <random>
 #include <vector>
 

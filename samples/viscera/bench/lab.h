@@ -65,6 +65,7 @@ class Lab {
 
     /// One of assets/scenes as JSON, in the bench's resolution.
     [[nodiscard]] nlohmann::json scene(std::string_view name) const;
+    /// The default one.
     [[nodiscard]] nlohmann::json default_scene() const { return scene("angiography.json"); }
     /// Frame and `shared` of the default scene, without passes.
     [[nodiscard]] nlohmann::json empty_scene() const;
