@@ -57,7 +57,7 @@ BloodBlocks::Blood BloodGpu::blood() const {
 
 void BloodGpu::bind_place(const Pass& pass, const gl::Program& program) const {
     bind(pass, program, "u_film", film());
-    pass.bind(program, "u_right", "flow_right");
+    jumps_->bind(pass, program);
 }
 
 void BloodGpu::set_medium(const gl::Program& program, const BloodMedium& medium) const {
@@ -103,6 +103,7 @@ void BloodGpu::take_surface(const Pass& pass, const BloodMedium& medium, bool em
         film_now_ = i == 0 ? 1 - film_now_ : film_now_;
     }
     ground_.take(pass, blocks_, film(), seams_->place_of_cell);
+    jumps_->take(pass, film());
     if (empty) {
         for (const gl::Framebuffer& target : spawn_target_) {
             clear(pass, target);
@@ -132,12 +133,15 @@ void BloodGpu::find_seams(const Pass& pass) {
     const Image position = gl::read_texture(*gl_, *pass.texture("position"));
     std::vector<SeamLink> links;
     std::vector<SeamJump> jumps;
+    std::vector<int> gutters;
     if (pass.has("seam")) {
         const Image seam = gl::read_texture(*gl_, *pass.texture("seam"));
         links = seam_links(position, seam);
         jumps = seam_jumps(position, seam);
+        gutters = seam_gutters(position, seam);
     }
     seams_.emplace(make_seams(*gl_, links, size_, BloodBlocks::block_side));
+    jumps_.emplace(*gl_, gutters, size_);
     blocks_.lie_on(position, links, jumps);
 }
 
@@ -157,7 +161,7 @@ const gl::Program& BloodGpu::use_deposit(const Pass& pass, const BloodMedium& me
     const gl::Program& program = use(pass, BloodShader::deposited);
     blocks_.bind_plan(pass, program);
     bind(pass, program, "u_film", areas);
-    pass.bind(program, "u_right", "flow_right");
+    jumps_->bind(pass, program);
     bind(pass, program, "u_deposit", source);
     pass.bind(program, "u_metric", "metric");
     set_medium(program, medium);
@@ -292,7 +296,10 @@ void BloodGpu::begin_picture(const Pass& pass, const BloodMedium& medium, Shown 
         return;
     }
     const gl::Program& program = use(pass, BloodShader::cap);
-    bind_place(pass, program);
+    // Which texels are gutters both textures of the film know; the other one is not waited for.
+    bind(pass, program, "u_areas", film_[1 - film_now_]);
+    bind(pass, program, "u_film", film());
+    pass.bind(program, "u_right", "flow_right");
     blocks_.bind_plan(pass, program);
     bind(pass, program, "u_drops", drops());
     pass.bind(program, "u_position", "position");

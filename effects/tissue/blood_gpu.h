@@ -10,6 +10,7 @@
 
 #include "effects/tissue/blood_blocks.h"
 #include "effects/tissue/blood_ground.h"
+#include "effects/tissue/blood_jumps.h"
 #include "effects/tissue/blood_medium.h"
 #include "effects/tissue/blood_seams.h"
 #include "effects/tissue/list_texture.h"
@@ -93,6 +94,7 @@ class BloodGpu {
     ListTexture spawn_;
     gl::Texture ledger_;  ///< volume given [mm^3], by the place of its drops in the ring
     std::optional<BloodSeams> seams_;
+    std::optional<BloodJumps> jumps_;
     std::array<gl::Framebuffer, 2> film_target_;   ///< with the relief
     std::array<gl::Framebuffer, 2> drops_target_;  ///< with the deposit
     std::array<gl::Framebuffer, 2> spawn_target_;  ///< with the ledger

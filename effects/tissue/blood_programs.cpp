@@ -14,6 +14,7 @@ std::vector<ProgramDesc> blood_programs() {
             {whole, "tissue/blood_faces.frag", {}},
             {whole, "tissue/blood_link.frag", {}},
             {whole, "tissue/blood_link.frag", {"RELIEF"}},
+            {whole, "tissue/blood_jump.frag", {}},
             {tile, "tissue/blood_film.frag", {"STEP"}},
             {tile, "tissue/blood_film.frag", {"STEP", "SEAMS"}},
             {tile, "tissue/blood_film.frag", {"STEP", "TOOLS"}},

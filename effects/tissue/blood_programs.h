@@ -24,6 +24,7 @@ enum class BloodShader : std::size_t {
     faces,
     link,
     link_relief,
+    jump,
     film,
     film_seams,
     film_tools,

@@ -1,5 +1,7 @@
 #include "effects/tissue/drop_groups.h"
 
+#include <bit>
+
 #include "effects/tissue/blood_programs.h"
 #include "engine/runtime/pass.h"
 
@@ -21,10 +23,11 @@ DropGroups::DropGroups(const gl::Functions& gl, int capacity)
     : gl_(&gl),
       capacity_(groups_for(capacity) * group_size),
       lives_(gl::Texture::make_2d(gl, groups_in_row, (groups_for(capacity) - 1) / groups_in_row + 1,
-                                  PixelFormat::r8, "groups with living drops")),
-      lives_target_(gl, lives_, "groups with living drops"),
+                                  PixelFormat::rg8, "drops that live")),
+      lives_target_(gl, lives_, "drops that live"),
       answers_(gl) {
-    list_.upload(gl, {}, "groups of drops");
+    drop_list_.upload(gl, {}, "drops that live");
+    group_list_.upload(gl, {}, "groups of drops");
 }
 
 int DropGroups::width() const {
@@ -43,18 +46,30 @@ void DropGroups::update(DropRing& ring) {
         return;
     }
     listed_version_ = ring.version();
-    items_.clear();
-    for (const int group : ring.groups()) {
-        items_.emplace_back(group, 0.0F, 0.0F, 0.0F);
+    drops_ = 0;
+    drop_items_.clear();
+    group_items_.clear();
+    const std::span<const std::uint16_t> lives = ring.lives();
+    for (std::size_t group = 0; group < lives.size(); ++group) {
+        if (lives[group] != 0) {
+            group_items_.emplace_back(group, 0.0F, 0.0F, 0.0F);
+        }
+        for (unsigned left = lives[group]; left != 0; left &= left - 1) {
+            if (drops_ % 4 == 0) {
+                drop_items_.emplace_back(0.0F);
+            }
+            drop_items_.back()[drops_++ % 4] =
+                static_cast<float>(group * DropRing::group_size) + static_cast<float>(std::countr_zero(left));
+        }
     }
-    listed_ = static_cast<int>(items_.size());
-    if (listed_ > 0) {
-        list_.upload(*gl_, items_, "groups of drops");
+    if (drops_ > 0) {
+        drop_list_.upload(*gl_, drop_items_, "drops that live");
+        group_list_.upload(*gl_, group_items_, "groups of drops");
     }
 }
 
 void DropGroups::ask(const Pass& pass, DropRing& ring, const gl::Texture& drops, const gl::Texture& before) {
-    if (listed_ == 0 || answers_.in_flight() >= most_questions) {
+    if (drops_ == 0 || answers_.in_flight() >= most_questions) {
         return;
     }
     const gl::Program& program = use(pass, BloodShader::lives);
@@ -66,7 +81,7 @@ void DropGroups::ask(const Pass& pass, DropRing& ring, const gl::Texture& drops,
 }
 
 void DropGroups::bind(const Pass& pass, const gl::Program& program, int first) const {
-    tissue::bind(pass, program, "u_groups", list_.texture());
+    tissue::bind(pass, program, "u_living", drop_list_.texture());
     program.set("u_first", first);
     program.set("u_capacity", capacity_);
 }
@@ -80,9 +95,9 @@ void DropGroups::bind(const Pass& pass, const gl::Program& program, const DropRa
 }
 
 void DropGroups::cover(const Pass& pass, const gl::Program& program) const {
-    bind(pass, program);
+    tissue::bind(pass, program, "u_groups", group_list_.texture());
     program.set("u_size", glm::vec2(width(), height()));
-    pass.draw_generated(GL_POINTS, listed_, 1);
+    pass.draw_generated(GL_POINTS, static_cast<int>(group_items_.size()), 1);
 }
 
 }  // namespace viscera::tissue

@@ -18,7 +18,7 @@ class Pass;
 
 namespace viscera::tissue {
 
-/// A ring of drops as shaders see it: where each lies in its texture, and which groups are drawn.
+/// A ring of drops as shaders see it: where each lies in its texture, and which are drawn.
 class DropGroups {
   public:
     /// `capacity`: drops that there must be room for.
@@ -31,17 +31,16 @@ class DropGroups {
 
     /// Takes over what the GPU has told meanwhile, and what the ring then lists.
     void update(DropRing& ring);
-    /// Asks which groups hold a living drop. `before`: the drops one step ago. Leaves a framebuffer of its
-    /// own bound.
+    /// Asks which drops live. `before`: the drops one step ago. Leaves a framebuffer of its own bound.
     void ask(const Pass& pass, DropRing& ring, const gl::Texture& drops, const gl::Texture& before);
 
-    /// Drops in the listed groups.
-    [[nodiscard]] int count() const { return listed_ * static_cast<int>(DropRing::group_size); }
+    /// Drops that are listed: all that live, and some that have gone meanwhile.
+    [[nodiscard]] int count() const { return drops_; }
     /// For a program with glsl/tissue/drop_ring.glsl: the listed ones.
     void bind(const Pass& pass, const gl::Program& program) const;
     /// Those in a run of the ring.
     void bind(const Pass& pass, const gl::Program& program, const DropRange& run) const;
-    /// Draws over the listed groups with a program in use whose vertex shader is drop_groups.vert.
+    /// Draws over the groups of those with a program in use whose vertex shader is drop_groups.vert.
     void cover(const Pass& pass, const gl::Program& program) const;
 
   private:
@@ -49,13 +48,15 @@ class DropGroups {
 
     const gl::Functions* gl_;
     int capacity_ = 0;
-    gl::Texture lives_;  ///< of groups: a drop lives
+    gl::Texture lives_;  ///< of groups: which of their drops live
     gl::Framebuffer lives_target_;
     gl::ReadBack answers_;
     gl::ReadBack::Result answer_;
-    ListTexture list_;
-    std::vector<glm::vec4> items_;
-    int listed_ = 0;
+    ListTexture drop_list_;   ///< places in the ring, four to an item
+    ListTexture group_list_;  ///< with a listed drop
+    std::vector<glm::vec4> drop_items_;
+    std::vector<glm::vec4> group_items_;
+    int drops_ = 0;
     std::uint64_t listed_version_ = 0;
 };
 

@@ -5,62 +5,43 @@
 namespace viscera::tissue {
 
 void DropRing::clear() {
+    lives_.clear();
     came_.clear();
     head_ = 0;
-    stale_ = false;
-    list();
+    ++version_;
 }
 
 DropRange DropRing::add(std::int64_t count, std::int64_t capacity) {
-    const auto groups = static_cast<std::size_t>(capacity / group_size);
-    came_.resize(groups, nobody);
+    lives_.resize(static_cast<std::size_t>(capacity / group_size), 0);
+    came_.resize(lives_.size(), 0);
     DropRange evicted{head_, 0};
-    bool changed = false;
-    const std::int64_t end = head_ + count;
-    for (std::int64_t at = head_; at < end;) {
-        const std::int64_t next = std::min((at / group_size + 1) * group_size, end);
-        std::uint64_t& last = came_[static_cast<std::size_t>(at / group_size) % groups];
-        if (at % group_size == 0) {
-            stale_ = last != nobody;
+    for (std::int64_t left = count; left > 0; --left, ++head_) {
+        const std::int64_t place = head_ % capacity;
+        const auto group = static_cast<std::size_t>(place / group_size);
+        const auto bit = static_cast<std::uint16_t>(1U << (place % group_size));
+        if ((lives_[group] & bit) != 0) {
+            evicted.first = evicted.count > 0 ? evicted.first : head_;
+            evicted.count = head_ + 1 - evicted.first;
         }
-        if (stale_) {
-            evicted.first = evicted.count > 0 ? evicted.first : at;
-            evicted.count = next - evicted.first;
-        }
-        changed = changed || last == nobody;
-        last = asked_;
-        at = next;
+        lives_[group] |= bit;
+        came_[group] = asked_;
     }
-    head_ = end;
-    if (changed) {
-        list();
-    }
+    version_ += count > 0 ? 1 : 0;
     return evicted;
 }
 
 void DropRing::hear(std::uint64_t tag, std::span<const std::byte> lives) {
     bool changed = false;
-    const std::size_t count = std::min(lives.size(), came_.size());
+    const std::size_t count = std::min(lives.size() / 2, lives_.size());
     for (std::size_t i = 0; i < count; ++i) {
-        std::uint64_t& last = came_[i];
-        if (lives[i] == std::byte{0} && last != nobody && last < tag) {
-            last = nobody;
-            changed = true;
+        if (came_[i] < tag) {
+            const auto before = lives_[i];
+            lives_[i] &= static_cast<std::uint16_t>(std::to_integer<unsigned>(lives[2 * i]) |
+                                                    std::to_integer<unsigned>(lives[2 * i + 1]) << 8U);
+            changed = changed || lives_[i] != before;
         }
     }
-    if (changed) {
-        list();
-    }
-}
-
-void DropRing::list() {
-    groups_.clear();
-    for (std::size_t i = 0; i < came_.size(); ++i) {
-        if (came_[i] != nobody) {
-            groups_.push_back(static_cast<int>(i));
-        }
-    }
-    ++version_;
+    version_ += changed ? 1 : 0;
 }
 
 }  // namespace viscera::tissue

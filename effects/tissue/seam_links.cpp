@@ -14,14 +14,25 @@ class Joiner {
   public:
     Joiner(const Image& position, const Image& seam) : position_(position), seam_(seam) {}
 
-    [[nodiscard]] std::vector<SeamJump> jumps() const {
-        std::vector<SeamJump> found;
+    [[nodiscard]] std::vector<int> gutters() const {
+        std::vector<int> found;
         for (int y = 0; y < position_.height; ++y) {
             for (int x = 0; x < position_.width; ++x) {
-                const glm::ivec2 to(glm::floor(place({x, y}) + 0.5));
-                if (is_gutter({x, y}) && inside(to)) {
-                    found.push_back({y * position_.width + x, to.y * position_.width + to.x});
+                if (is_gutter({x, y})) {
+                    found.push_back(y * position_.width + x);
                 }
+            }
+        }
+        return found;
+    }
+
+    [[nodiscard]] std::vector<SeamJump> jumps() const {
+        std::vector<SeamJump> found;
+        for (const int gutter : gutters()) {
+            const glm::ivec2 to(
+                glm::floor(place({gutter % position_.width, gutter / position_.width}) + 0.5));
+            if (inside(to)) {
+                found.push_back({gutter, to.y * position_.width + to.x});
             }
         }
         return found;
@@ -100,6 +111,10 @@ std::vector<SeamLink> seam_links(const Image& position, const Image& seam) {
 
 std::vector<SeamJump> seam_jumps(const Image& position, const Image& seam) {
     return Joiner(position, seam).jumps();
+}
+
+std::vector<int> seam_gutters(const Image& position, const Image& seam) {
+    return Joiner(position, seam).gutters();
 }
 
 std::vector<SeamLink> links_by_cell(std::span<const SeamLink> links, std::span<float> first) {

@@ -30,6 +30,9 @@ struct SeamJump {
 };
 [[nodiscard]] std::vector<SeamJump> seam_jumps(const Image& position, const Image& seam);
 
+/// Texels of gutters: x + width * y each, rising.
+[[nodiscard]] std::vector<int> seam_gutters(const Image& position, const Image& seam);
+
 /// Links in the order of the cells that they change, each twice: once for its `from`, and once for its
 /// `to`, with a negative share. `side` is 4 more in the last one of each cell. `first`, by cell, gets the
 /// index of its first one, or -1.

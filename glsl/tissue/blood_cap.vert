@@ -1,10 +1,11 @@
 #version 330 core
-#include "tissue/blood_place.glsl"
 #include "tissue/blood_drop.glsl"
 #include "tissue/drop_ring.glsl"
 // A drop as it is seen: a point around it in texture space, and one for each of four ways in which a seam cuts it. One that is narrower than three texels is
 // drawn as wide as they are, and so much flatter: texels that sample it here and there would show dots.
 uniform sampler2D u_drops;
+uniform sampler2D u_areas;  // a film, of which only w is read: -1 in gutters
+uniform sampler2D u_right;  // of gutters: the texel in which the surface goes on
 uniform sampler2D u_position;
 uniform sampler2D u_metric;
 flat out vec4 v_cap;      // place [mm], radius [mm]
@@ -45,7 +46,7 @@ void main() {
     if (!(drop.z > 0.0)) {
         return;
     }
-    ivec2 size = textureSize(u_film, 0);
+    ivec2 size = textureSize(u_areas, 0);
     vec2 centre = drop.xy * vec2(size);
     ivec2 at = clamp(ivec2(floor(centre)), ivec2(0), size - 1);
     float own = drop_radius(drop.z);
@@ -63,7 +64,7 @@ void main() {
         bool more = true;
         while (more) {
             ivec2 probed = clamp(ivec2(floor(centre + next * towards)), ivec2(0), size - 1);
-            drawn = texelFetch(u_film, probed, 0).w < 0.0;
+            drawn = texelFetch(u_areas, probed, 0).w < 0.0;
             centre = drawn ? texelFetch(u_right, probed, 0).xy + 0.5 : centre;
             more = !drawn && next < far;
             next = min(next + gutter_width, far);

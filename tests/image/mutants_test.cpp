@@ -273,7 +273,7 @@ constexpr Mutant mutants[] = {
      "(0.97 / 3.0) * height * height", "blood"},
     {"DropTrail", "tissue_blood", "tissue/blood_move.frag", "u_drop.y * 2.0 * radius",
      "u_drop.y * 1.8 * radius", "blood"},
-    {"DropsTakenForDead", "tissue_blood", "tissue/drop_lives.frag", "most > 0.0", "most > 2.0", "blood"},
+    {"DropsTakenForDead", "tissue_blood", "tissue/drop_lives.frag", ".z) > 0.0", ".z) > 2.0", "blood"},
     {"DropShape", "tissue_blood", "tissue/blood_cap.vert", "u_drop.x * own", "0.95 * u_drop.x * own",
      "blood"},
     {"BloodColour", "tissue_blood", "tissue/blood_look.frag", "exp(-u_extinction * h)",

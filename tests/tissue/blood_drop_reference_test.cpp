@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -177,18 +178,23 @@ TEST(BloodDropReference, WhatHasGoneIsDrawnNoMore) {
                 continue;
             }
             const Image ring = watched.renderer->read("test.drops");
-            const std::span<const int> groups = state->ring.groups();
+            const std::span<const std::uint16_t> lives = state->ring.lives();
             std::int64_t alive = 0;
             for (int y = 0; y < std::max(max_drops / 256, 4); ++y) {
                 for (int x = 0; x < 256; ++x) {
                     if (ring.at(x, y, 2) > 0.0F) {
                         ++alive;
-                        EXPECT_TRUE(std::ranges::binary_search(groups, y / 4 * 64 + x / 4)) << x << ' ' << y;
+                        const auto group = static_cast<std::size_t>(y / 4 * 64 + x / 4);
+                        EXPECT_TRUE((lives[group] >> (y % 4 * 4 + x % 4) & 1) != 0) << x << ' ' << y;
                     }
                 }
             }
             most_alive = std::max(most_alive, alive);
-            most_listed = std::max(most_listed, std::ssize(groups) * tissue::DropRing::group_size);
+            std::int64_t listed = 0;
+            for (const std::uint16_t of_group : lives) {
+                listed += std::popcount(of_group);
+            }
+            most_listed = std::max(most_listed, listed);
         }
         const std::int64_t came = watched.state.lock()->ring.head();
         const BloodAccount account = account_of(watched.renderer->read("tissue.blood_account"));

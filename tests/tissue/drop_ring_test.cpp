@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <deque>
+#include <numeric>
 #include <random>
 #include <vector>
 
@@ -16,27 +17,42 @@ using tissue::DropRing;
 
 constexpr std::int64_t capacity = 160;  // ten groups
 
-std::vector<int> groups_of(const DropRing& ring) {
-    return {ring.groups().begin(), ring.groups().end()};
+/// Places in the ring that may hold a living drop.
+std::vector<int> listed_in(const DropRing& ring) {
+    std::vector<int> listed;
+    for (int place = 0; place < std::ssize(ring.lives()) * DropRing::group_size; ++place) {
+        const auto group = static_cast<std::size_t>(place / DropRing::group_size);
+        if ((ring.lives()[group] >> (place % DropRing::group_size) & 1) != 0) {
+            listed.push_back(place);
+        }
+    }
+    return listed;
 }
 
-std::vector<std::byte> lives_in(const std::vector<int>& groups) {
-    std::vector<std::byte> lives(static_cast<std::size_t>(capacity / DropRing::group_size), std::byte{0});
-    for (const int group : groups) {
-        lives[static_cast<std::size_t>(group)] = std::byte{255};
+/// An answer of the GPU.
+std::vector<std::byte> lives_in(const std::vector<int>& places) {
+    std::vector<std::byte> lives(static_cast<std::size_t>(capacity / 8), std::byte{0});
+    for (const int place : places) {
+        lives[static_cast<std::size_t>(place / 8)] |= std::byte{1} << (place % 8);
     }
     return lives;
 }
 
-TEST(DropRing, ListsGroupsUntilToldThatNoneLivesThere) {
+std::vector<int> run_of(int first, int count) {
+    std::vector<int> run(static_cast<std::size_t>(count));
+    std::iota(run.begin(), run.end(), first);
+    return run;
+}
+
+TEST(DropRing, ListsDropsUntilToldThatTheyHaveGone) {
     DropRing ring;
-    EXPECT_EQ(groups_of(ring), std::vector<int>());
+    EXPECT_EQ(listed_in(ring), std::vector<int>());
     EXPECT_EQ(ring.add(40, capacity).count, 0);
-    EXPECT_EQ(groups_of(ring), (std::vector{0, 1, 2}));
+    EXPECT_EQ(listed_in(ring), run_of(0, 40));
     const std::uint64_t tag = ring.ask();
     const std::uint64_t version = ring.version();
-    ring.hear(tag, lives_in({0, 2}));
-    EXPECT_EQ(groups_of(ring), (std::vector{0, 2}));
+    ring.hear(tag, lives_in({3, 15, 33}));
+    EXPECT_EQ(listed_in(ring), (std::vector{3, 15, 33}));
     EXPECT_NE(ring.version(), version);
 }
 
@@ -46,9 +62,9 @@ TEST(DropRing, AnAnswerSaysNothingOfDropsThatCameAfterTheQuestion) {
     const std::uint64_t tag = ring.ask();
     ring.add(2, capacity);  // into the second group
     ring.hear(tag, lives_in({}));
-    EXPECT_EQ(groups_of(ring), std::vector{1});
-    ring.hear(ring.ask(), lives_in({}));
-    EXPECT_EQ(groups_of(ring), std::vector<int>());
+    EXPECT_EQ(listed_in(ring), run_of(16, 6));
+    ring.hear(ring.ask(), lives_in({20}));
+    EXPECT_EQ(listed_in(ring), std::vector{20});
 }
 
 TEST(DropRing, AnAnswerToAQuestionBeforeANewBeginningIsHeardInVain) {
@@ -59,7 +75,7 @@ TEST(DropRing, AnAnswerToAQuestionBeforeANewBeginningIsHeardInVain) {
     EXPECT_EQ(ring.head(), 0);
     ring.add(20, capacity);
     ring.hear(tag, lives_in({}));
-    EXPECT_EQ(groups_of(ring), (std::vector{0, 1}));
+    EXPECT_EQ(listed_in(ring), run_of(0, 20));
 }
 
 TEST(DropRing, DropsInWhosePlacesOthersMayLiveTurnThemOut) {
@@ -68,12 +84,12 @@ TEST(DropRing, DropsInWhosePlacesOthersMayLiveTurnThemOut) {
     const DropRange all = ring.add(20, capacity);
     EXPECT_EQ(all.first, capacity);
     EXPECT_EQ(all.count, 20);
-    // The rest of the second group is still that of the first round.
-    ring.hear(ring.ask(), lives_in({1}));
+    // Of the rest of the second group, still that of the first round, two live.
+    ring.hear(ring.ask(), lives_in({19, 22, 30}));
     const DropRange rest = ring.add(20, capacity);
-    EXPECT_EQ(rest.first, capacity + 20);
-    EXPECT_EQ(rest.count, 12);
-    EXPECT_EQ(groups_of(ring), (std::vector{1, 2}));
+    EXPECT_EQ(rest.first, capacity + 22);
+    EXPECT_EQ(rest.count, 9);
+    EXPECT_EQ(ring.head(), capacity + 40);
 }
 
 /// A ring whose drops die at random, asked and answered late.
@@ -107,26 +123,26 @@ TEST(DropRing, ListsEachDropThatLivesAndForgetsTheOthers) {
             lives[i] = lives[i] && (step < 3900 ? below(20) > 0 : below(3) > 0);
         }
         if (below(3) == 0 || step >= 3990) {
-            std::vector<int> groups;
+            std::vector<int> places;
             for (int i = 0; i < capacity; ++i) {
                 if (lives[static_cast<std::size_t>(i)]) {
-                    groups.push_back(i / static_cast<int>(DropRing::group_size));
+                    places.push_back(i);
                 }
             }
-            asked.push_back({ring.ask(), lives_in(groups)});
+            asked.push_back({ring.ask(), lives_in(places)});
         }
         while (asked.size() > (step < 3990 ? 3U : 0U)) {
             ring.hear(asked.front().tag, asked.front().answer);
             asked.pop_front();
         }
-        for (std::int64_t i = 0; i < capacity; ++i) {
-            ASSERT_TRUE(!lives[static_cast<std::size_t>(i)] ||
-                        std::ranges::binary_search(ring.groups(), static_cast<int>(i / DropRing::group_size)))
+        const std::vector<int> listed = listed_in(ring);
+        for (int i = 0; i < capacity; ++i) {
+            ASSERT_TRUE(!lives[static_cast<std::size_t>(i)] || std::ranges::binary_search(listed, i))
                 << "place " << i << " at step " << step;
         }
     }
     EXPECT_GT(turned_out, 100U);
-    EXPECT_TRUE(ring.groups().empty());
+    EXPECT_TRUE(listed_in(ring).empty());
 }
 
 }  // namespace
