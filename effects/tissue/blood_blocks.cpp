@@ -96,28 +96,29 @@ void BloodBlocks::pair_tiles(std::span<const SeamLink> links, std::span<const Se
 }
 
 void BloodBlocks::pair_blocks(std::span<const SeamLink> links, std::span<const SeamJump> jumps) {
-    // How near blood must be to one block for the other to be stepped: as blood_across.frag.
-    enum Least { stepped, holding, far };
-    std::vector<std::array<int, 3>> found;  // to, from, least
+    // What a block does to the other one: as blood_across.frag. Of two ways in which blood comes the lower
+    // needs less.
+    enum Kind { from_where_it_lies = 1, from_where_it_runs_far = 2, shown_by_gutters = 4 };
+    std::vector<std::array<int, 3>> found;  // to, from, kind
     const auto block = [&](int texel, const glm::ivec2& off) {
         const glm::ivec2 at =
             glm::clamp(glm::ivec2(texel % size_, texel / size_) + off, 0, size_ - 1) / block_side;
         return at.y * blocks_ + at.x;
     };
-    const auto add = [&](int from, int to, Least least) {
+    const auto add = [&](int from, int to, Kind kind) {
         if (from != to) {
-            found.push_back({to, from, least});
+            found.push_back({to, from, kind});
         }
     };
     const auto flow = [&](int from, int to, bool towards) {
         const int here = block(from, glm::ivec2(0));
         const int there = block(to, glm::ivec2(0));
-        add(here, there, holding);
+        add(here, there, from_where_it_lies);
         for (int i = 0; i < 9; ++i) {
             const glm::ivec2 way = glm::ivec2(i % 3 - 1, i / 3 - 1) * past_seam;
-            add(here, block(to, way), far);
+            add(here, block(to, way), from_where_it_runs_far);
             if (towards) {
-                add(block(from, way), there, far);
+                add(block(from, way), there, from_where_it_runs_far);
             }
         }
     };
@@ -128,19 +129,30 @@ void BloodBlocks::pair_blocks(std::span<const SeamLink> links, std::span<const S
     // A drop leaves blood where the gutter below it leads, and the gutter shows what is there.
     for (const SeamJump& jump : jumps) {
         flow(jump.gutter, jump.to, false);
-        add(block(jump.to, glm::ivec2(0)), block(jump.gutter, glm::ivec2(0)), stepped);
+        add(block(jump.to, glm::ivec2(0)), block(jump.gutter, glm::ivec2(0)), shown_by_gutters);
     }
     std::ranges::sort(found);
-    const auto same = [](const std::array<int, 3>& a, const std::array<int, 3>& b) {
-        return a[0] == b[0] && a[1] == b[1];
-    };
-    found.erase(std::ranges::unique(found, same).begin(), found.end());
-    std::vector<glm::vec4> pairs;
+    found.erase(std::ranges::unique(found).begin(), found.end());
+    std::vector<glm::vec4> pairs;  // four to an item
     std::vector<glm::vec2> first(static_cast<std::size_t>(blocks_) * static_cast<std::size_t>(blocks_));
-    for (const auto& [to, from, least] : found) {
+    int in_item = 0;
+    for (std::size_t i = 0; i < found.size();) {
+        const auto [to, from, lowest] = found[i];
+        int kind = lowest;
+        for (++i; i < found.size() && found[i][0] == to && found[i][1] == from; ++i) {
+            kind |= found[i][2] & shown_by_gutters;
+        }
         glm::vec2& of_block = first[static_cast<std::size_t>(to)];
-        of_block = {of_block.y > 0.0F ? of_block.x : static_cast<float>(pairs.size()), of_block.y + 1.0F};
-        pairs.emplace_back(from % blocks_, from / blocks_, least, 0.0F);
+        if (of_block.y == 0.0F) {
+            of_block.x = static_cast<float>(pairs.size());
+            in_item = 0;
+        }
+        if (in_item == 0) {
+            pairs.emplace_back(0.0F);
+            of_block.y += 1.0F;
+        }
+        pairs.back()[in_item] = static_cast<float>(kind + (from % blocks_ << 3) + (from / blocks_ << 12));
+        in_item = (in_item + 1) % 4;
     }
     block_pairs_.upload(*gl_, pairs, "blocks that seams join");
     first_pair_.upload(std::as_bytes(std::span(first)));
@@ -153,24 +165,29 @@ void BloodBlocks::lie_on(const Image& position, std::span<const SeamLink> links,
     const auto count = static_cast<std::size_t>(blocks_);
     std::vector<unsigned char> surface(count * count, 0);
     std::vector<unsigned char> cells(count * count, 0);
+    std::vector<unsigned char> gutters(count * count, 0);
     for (int y = 0; y < size_; ++y) {
         for (int x = 0; x < size_; ++x) {
             const std::size_t block = pixel_index(x / block_side, y / block_side, blocks_);
             const float coverage = position.at(x, y, 3);
             surface[block] = coverage > 0.0F ? 255 : surface[block];
             cells[block] = coverage > 0.75F ? 1 : cells[block];
+            gutters[block] = coverage > 0.0F && coverage < 0.75F ? 1 : gutters[block];
         }
     }
     surface_.upload(std::as_bytes(std::span(surface)));
     std::vector<glm::vec4> list;
-    for (const bool with_cells : {true, false}) {
+    const auto add = [&](bool with_cells, bool with_gutters) {
         for (std::size_t i = 0; i < surface.size(); ++i) {
-            if (surface[i] != 0 && (cells[i] != 0) == with_cells) {
+            if (surface[i] != 0 && (cells[i] != 0) == with_cells && (gutters[i] != 0) == with_gutters) {
                 list.emplace_back(i % count, i / count, 0.0F, 0.0F);
             }
         }
-        with_cells_ = with_cells ? static_cast<int>(list.size()) : with_cells_;
-    }
+        return static_cast<int>(list.size());
+    };
+    without_gutters_ = add(true, false);
+    with_cells_ = add(true, true);
+    add(false, true);
     listed_ = static_cast<int>(list.size());
     list_.upload(*gl_, list, "blocks with a surface");
 }
@@ -349,7 +366,8 @@ void BloodBlocks::cover(const Pass& pass, const gl::Program& program, Drawn draw
     if (drawn == Drawn::settled) {
         bind(pass, program, "u_plan_before", plan_[1 - now_]);
     }
-    draw(pass, program, drawn == Drawn::gutters ? with_cells_ : 0,
+    program.set("u_with_cells", with_cells_);
+    draw(pass, program, drawn == Drawn::gutters ? without_gutters_ : 0,
          drawn == Drawn::cells ? with_cells_ : listed_);
 }
 

@@ -42,7 +42,7 @@ class BloodBlocks {
     };
     enum class Drawn {
         cells,    ///< to be stepped, those with cells
-        gutters,  ///< to be stepped, those with gutters alone
+        gutters,  ///< of which nothing but gutters changes
         settled,  ///< stepped until the last look
     };
 
@@ -51,7 +51,7 @@ class BloodBlocks {
 
     /// The surface is another.
     void lie_on(const Image& position, std::span<const SeamLink> links, std::span<const SeamJump> jumps);
-    /// Blocks with a surface: x, y each; those with cells first.
+    /// Blocks with a surface: x, y each; those with cells first, and of these those without gutters.
     [[nodiscard]] const gl::Texture& list() const { return list_.texture(); }
     [[nodiscard]] int count() const { return listed_; }
     /// Nothing is known yet; `everywhere`: blood may be anywhere.
@@ -102,6 +102,7 @@ class BloodBlocks {
     int blocks_ = 0;    ///< along each side
     ListTexture list_;  ///< see list()
     int listed_ = 0;
+    int without_gutters_ = 0;
     int with_cells_ = 0;
     ListTexture tile_pairs_;  ///< that seams join: x, y here, x, y across
     int tile_pair_count_ = 0;

@@ -19,7 +19,7 @@ std::vector<ProgramDesc> blood_programs() {
             {tile, "tissue/blood_film.frag", {"STEP", "SEAMS"}},
             {tile, "tissue/blood_film.frag", {"STEP", "TOOLS"}},
             {tile, "tissue/blood_film.frag", {"STEP", "TOOLS", "SEAMS"}},
-            {tile, "tissue/blood_gutter.frag", {}},
+            {tile, "tissue/blood_gutter.frag", {"GUTTERS"}},
             {"tissue/blood_seam.vert", "tissue/blood_seam.frag", {}},
             {groups, "tissue/blood_move.frag", {}},
             {groups, "tissue/blood_move.frag", {"TOOLS"}},

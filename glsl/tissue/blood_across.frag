@@ -1,17 +1,23 @@
 #version 330 core
 #include "tissue/blood_held.glsl"
+#include "tissue/blood_plan.glsl"
 #include "tissue/list.glsl"
-// The plan: blocks that blood may reach within their chart, and those that it may reach across seams.
+// The plan: blocks that blood may reach within their chart, those that it may reach across seams, and those whose gutters show any of them.
 uniform sampler2D u_near;   // of blood_near.frag
 uniform sampler2D u_reach;  // of tiles: to be stepped
-uniform sampler2D u_first;  // of each block: where its pairs begin, and how many there are
-uniform sampler2D u_pairs;  // a block across: x, y; kind, see least_of()
+uniform sampler2D u_first;  // of each block: where its pairs begin, and how many items there are
+uniform sampler2D u_pairs;  // four pairs an item: the kind of pair, x << 3, y << 12 of the block across
 layout(location = 0) out vec2 o_plan;  // see blood_plan.glsl
 
-/// How near blood must be to the other block: gutters show all that is stepped across their seam, a film crosses it from where it lies,
-/// and goes on beyond if it runs far.
-float least_of(float kind) {
-    return kind < 0.5 ? may_come : kind < 1.5 ? lies_there : runs_far;
+const int kind_reach = 3;    // a film crosses from where it lies: 1; and goes on beyond if it runs far: 2
+const int kind_gutters = 4;  // gutters show all that is stepped there
+
+/// What a pair makes of the plan.
+float plan_of(int pair) {
+    float near = texelFetch(u_near, ivec2((pair >> 3) & 511, pair >> 12), 0).r;
+    int reach = pair & kind_reach;
+    bool comes = reach > 0 && near > (reach == 1 ? lies_there : runs_far) - 0.1;
+    return comes ? 1.0 : (pair & kind_gutters) != 0 && near > may_come - 0.1 ? plan_gutters : 0.0;
 }
 
 void main() {
@@ -21,11 +27,11 @@ void main() {
     bool awake = texelFetch(u_reach, block / 4, 0).r > 0.5;
     int i = int(pairs.x);
     int end = awake && near.r < 0.5 ? i + int(pairs.y) : i;
-    bool comes = false;
+    float plan = near.r;
     while (i < end) {
-        vec4 pair = list_item(u_pairs, i);
-        comes = texelFetch(u_near, ivec2(pair.xy), 0).r > least_of(pair.z) - 0.1;
-        i = comes ? end : i + 1;
+        ivec4 four = ivec4(list_item(u_pairs, i));
+        plan = max(plan, max(max(plan_of(four.x), plan_of(four.y)), max(plan_of(four.z), plan_of(four.w))));
+        i = plan > 0.5 ? end : i + 1;
     }
-    o_plan = vec2(comes ? 1.0 : near.r, near.g);
+    o_plan = vec2(plan, near.g);
 }

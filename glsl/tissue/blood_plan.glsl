@@ -1,8 +1,9 @@
 // Blocks of 8 x 8 texels, the finer grid over the tiles: as many steps as there are texels along a side lie between two looks, and a
 // film goes on by a texel per step at most. What blood does not reach stays as it is until the next look.
-uniform sampler2D u_plan;  // r: to be stepped, g: to be shown
+uniform sampler2D u_plan;  // r: 1 to be stepped, plan_gutters only what its gutters show; g: to be shown
 
 const int block_side = 8;
+const float plan_gutters = 0.4;
 
 bool steps_in(ivec2 block) {
     return texelFetch(u_plan, block, 0).r > 0.5;
@@ -11,4 +12,9 @@ bool steps_in(ivec2 block) {
 /// Whether the film in a texel is stepped.
 bool steps_at(ivec2 texel) {
     return steps_in(texel >> 3);
+}
+
+/// Of a block's plan: whether it is drawn in each step, if only because its gutters show what is stepped elsewhere.
+bool is_drawn(float plan) {
+    return plan > 0.5 * plan_gutters;
 }

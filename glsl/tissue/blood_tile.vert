@@ -7,8 +7,11 @@ uniform int u_first;       // of the list
 #ifdef SETTLED
 uniform sampler2D u_plan_before;
 #endif
+#ifdef GUTTERS
+uniform int u_with_cells;  // from here on blocks have none
+#endif
 #ifdef CHANGED
-uniform sampler2D u_stepped;  // r: stepped since the picture was drawn
+uniform sampler2D u_stepped;  // r: the greatest plan since the picture was drawn
 uniform bool u_whole;         // the picture holds nothing yet
 #endif
 flat out ivec2 v_ground;  // see blood_on_ground.glsl
@@ -23,11 +26,14 @@ void main() {
     ivec2 block = ivec2(list_item(u_list, number).xy);
     vec2 plan = texelFetch(u_plan, block, 0).rg;
 #ifdef SETTLED
-    // Stepped until now.
-    bool drawn = plan.r < 0.5 && texelFetch(u_plan_before, block, 0).r > 0.5;
+    // Drawn until now.
+    bool drawn = !is_drawn(plan.r) && is_drawn(texelFetch(u_plan_before, block, 0).r);
 #elif defined(CHANGED)
     float stepped = texelFetch(u_stepped, block, 0).r;
-    bool drawn = max(stepped, plan.r) > 0.5 || (u_whole && plan.g > 0.5);
+    bool drawn = is_drawn(max(stepped, plan.r)) || (u_whole && plan.g > 0.5);
+#elif defined(GUTTERS)
+    // The others are stepped with their cells.
+    bool drawn = is_drawn(plan.r) && (plan.r < 0.5 || number >= u_with_cells);
 #else
     bool drawn = plan.r > 0.5;
 #endif
