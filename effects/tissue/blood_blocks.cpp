@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <utility>
 
 #include "effects/tissue/blood_programs.h"
 #include "engine/core/pixel_index.h"
@@ -18,6 +19,7 @@ constexpr int past_seam = 4;
 constexpr float steps_per_look = 8.0F;  // at most
 // A film that creeps more slowly stands [mm/s].
 constexpr float still_mm_s = 5e-4F;
+constexpr int points_per_drop = 2;  // as blood_mark.vert
 // Marks are points as large as what they mark.
 constexpr gl::RasterState mark_state = [] {
     gl::RasterState state = gl::max_blend_state;
@@ -54,14 +56,14 @@ BloodBlocks::BloodBlocks(const gl::Functions& gl, int size)
       blocks_(divided_up(size, block_side)),
       first_pair_(gl::Texture::make_2d(gl, blocks_, blocks_, PixelFormat::rg32f, "pairs of blocks")),
       surface_(gl::Texture::make_2d(gl, blocks_, blocks_, PixelFormat::r8, "blocks with a surface")),
-      marks_(pair_of(gl, tiles_, PixelFormat::rg8, "tiles of blood")),
+      marks_(gl::Texture::make_2d(gl, tiles_, tiles_, PixelFormat::rg8, "tiles of blood")),
       across_(gl::Texture::make_2d(gl, tiles_, tiles_, PixelFormat::r8, "tiles of blood across seams")),
       reach_(gl::Texture::make_2d(gl, tiles_, tiles_, PixelFormat::rg8, "tiles in reach of blood")),
       held_(pair_of(gl, blocks_, PixelFormat::rgba8, "blocks of blood")),
       near_(gl::Texture::make_2d(gl, blocks_, blocks_, PixelFormat::rg8, "blocks near blood")),
       plan_(pair_of(gl, blocks_, PixelFormat::rg8, "blocks to be stepped")),
       stepped_(gl::Texture::make_2d(gl, blocks_, blocks_, PixelFormat::r8, "blocks stepped")),
-      marks_target_(targets_of(gl, marks_, "tiles of blood")),
+      marks_target_(gl, marks_, "tiles of blood"),
       across_target_(gl, across_, "tiles of blood across seams"),
       reach_target_(gl, reach_, "tiles in reach of blood"),
       held_target_(targets_of(gl, held_, "blocks of blood")),
@@ -195,16 +197,16 @@ void BloodBlocks::lie_on(const Image& position, std::span<const SeamLink> links,
 void BloodBlocks::begin(const Pass& pass, bool everywhere) {
     const float value = everywhere ? 1.0F : 0.0F;
     for (std::size_t i = 0; i < 2; ++i) {
-        clear(pass, marks_target_[i], value);
         draw_into(pass, held_target_[i], gl::overwrite_state);
         held_target_[i].clear_colour(0, {value, value, 0.0F, 0.0F});
         clear(pass, plan_target_[i], value);
     }
-    clear(pass, reach_target_, value);
     clear(pass, across_target_);
     clear(pass, stepped_target_);
     noted_ = false;
     steps_planned_ = 0;
+    looked_ = false;
+    tiles_old_ = true;
     expected_count_ = 0;
 }
 
@@ -215,13 +217,8 @@ void BloodBlocks::expect(std::span<const glm::vec4> places) {
     }
 }
 
-int BloodBlocks::points_of(Squares squares) {
-    return squares == Squares::blocks ? 2 : 1;  // as blood_mark.vert
-}
-
 const gl::Program& BloodBlocks::begin_mark(const Pass& pass, const BloodMedium& medium, BloodShader shader,
-                                           const gl::Texture& drops, Squares squares) const {
-    const bool blockwise = squares == Squares::blocks;
+                                           const gl::Texture& drops) const {
     const gl::Program& program = use(pass, shader);
     bind(pass, program, "u_drops", drops);
     pass.bind(program, "u_metric", "metric");
@@ -230,52 +227,55 @@ const gl::Program& BloodBlocks::begin_mark(const Pass& pass, const BloodMedium& 
     program.set("u_flow", medium.flow);
     program.set("u_strength", medium.strength);
     program.set("u_steps", static_cast<float>(steps_per_plan));
-    program.set("u_tile_count", glm::ivec2(blockwise ? blocks_ : tiles_));
+    program.set("u_block_count", glm::ivec2(blocks_));
     program.set("u_film_size", glm::vec2(static_cast<float>(size_)));
-    program.set("u_blockwise", blockwise);
-    draw_into(pass, blockwise ? held_target_[now_] : marks_target_[now_],
-              blockwise ? drop_mark_state : mark_state);
+    draw_into(pass, held_target_[now_], drop_mark_state);
     return program;
 }
 
-void BloodBlocks::mark_added(const Pass& pass, const BloodMedium& medium, const Blood& blood,
-                             const DropRange& added, Squares squares) const {
-    const gl::Program& program = begin_mark(pass, medium, BloodShader::mark_of_drops, blood.drops, squares);
-    blood.groups.bind(pass, program, added);
-    pass.draw_generated(GL_POINTS, static_cast<int>(added.count) * points_of(squares), 1);
-}
-
-void BloodBlocks::mark_alive(const Pass& pass, const BloodMedium& medium, const Blood& blood,
-                             Squares squares) const {
+void BloodBlocks::mark_alive(const Pass& pass, const BloodMedium& medium, const Blood& blood) const {
     if (blood.groups.count() > 0) {
-        const gl::Program& program =
-            begin_mark(pass, medium, BloodShader::mark_of_drops, blood.drops, squares);
+        const gl::Program& program = begin_mark(pass, medium, BloodShader::mark_of_drops, blood.drops);
         blood.groups.bind(pass, program);
-        pass.draw_generated(GL_POINTS, blood.groups.count() * points_of(squares), 1);
+        pass.draw_generated(GL_POINTS, blood.groups.count() * points_per_drop, 1);
     }
     if (expected_count_ > 0) {
-        (void)begin_mark(pass, medium, BloodShader::mark_of_places, expected_.texture(), squares);
-        pass.draw_generated(GL_POINTS, expected_count_ * points_of(squares), 1);
+        (void)begin_mark(pass, medium, BloodShader::mark_of_places, expected_.texture());
+        pass.draw_generated(GL_POINTS, expected_count_ * points_per_drop, 1);
     }
 }
 
 void BloodBlocks::reach(const Pass& pass) const {
+    const gl::Program& scan = use(pass, BloodShader::scan);
+    bind(pass, scan, "u_blocks", held_[now_]);
+    draw_into(pass, marks_target_, gl::overwrite_state);
+    pass.draw_fullscreen();
     if (tile_pair_count_ > 0) {
-        const gl::Program& marks = use(pass, BloodShader::mark_of_tiles);
-        draw_into(pass, across_target_, mark_state);
-        bind(pass, marks, "u_pairs", tile_pairs_.texture());
-        bind(pass, marks, "u_marked", marks_[now_]);
+        const gl::Program& pairs = use(pass, BloodShader::mark_of_tiles);
+        clear(pass, across_target_);
+        gl::apply(pass.gl(), mark_state, {0, 0, tiles_, tiles_});
+        bind(pass, pairs, "u_pairs", tile_pairs_.texture());
+        bind(pass, pairs, "u_tiles", marks_);
         pass.draw_generated(GL_POINTS, tile_pair_count_, 1);
     }
     const gl::Program& program = use(pass, BloodShader::reach);
-    bind(pass, program, "u_tiles", marks_[now_]);
+    bind(pass, program, "u_tiles", marks_);
     bind(pass, program, "u_across", across_);
     draw_into(pass, reach_target_, gl::overwrite_state);
     pass.draw_fullscreen();
 }
 
-void BloodBlocks::plan(const Pass& pass, const BloodMedium& medium, const Blood& blood) {
-    mark_alive(pass, medium, blood, Squares::blocks);
+bool BloodBlocks::plan(const Pass& pass, const BloodMedium& medium, const Blood& blood, bool for_step) {
+    const bool due = looked_ || (for_step && steps_planned_ <= 0 && blood.groups.count() > 0);
+    if (!due) {
+        steps_planned_ -= for_step ? 1 : 0;
+        return false;
+    }
+    mark_alive(pass, medium, blood);
+    if (tiles_old_) {
+        reach(pass);
+        tiles_old_ = false;
+    }
     const gl::Program& program = use(pass, BloodShader::near);
     bind(pass, program, "u_reach", reach_);
     bind(pass, program, "u_blocks", held_[now_]);
@@ -289,7 +289,8 @@ void BloodBlocks::plan(const Pass& pass, const BloodMedium& medium, const Blood&
     bind(pass, across, "u_pairs", block_pairs_.texture());
     draw_into(pass, plan_target_[now_], gl::overwrite_state);
     pass.draw_fullscreen();
-    steps_planned_ = steps_per_plan;
+    steps_planned_ = steps_per_plan - (for_step ? 1 : 0);
+    return std::exchange(looked_, false);
 }
 
 void BloodBlocks::look(const Pass& pass, const BloodMedium& medium, const Blood& blood, bool wake) {
@@ -318,33 +319,21 @@ void BloodBlocks::look(const Pass& pass, const BloodMedium& medium, const Blood&
     search.set("u_run", steps_per_look * medium.flow.z * medium.flow.x * medium.strength * steepest);
     draw_into(pass, held_target_[1 - before], gl::overwrite_state);
     pass.draw_fullscreen();
-    const gl::Program& scan = use(pass, BloodShader::scan);
-    bind(pass, scan, "u_tiles", marks_[before]);
-    bind(pass, scan, "u_reach", reach_);
-    bind(pass, scan, "u_blocks", held_[1 - before]);
-    scan.set("u_all", all);
-    draw_into(pass, marks_target_[1 - before], gl::overwrite_state);
-    pass.draw_fullscreen();
     now_ = 1 - before;
-    clear(pass, across_target_);
-    mark_alive(pass, medium, blood, Squares::tiles);
-    reach(pass);
-    plan(pass, medium, blood);
+    looked_ = tiles_old_ = true;
 }
 
-void BloodBlocks::add_drops(const Pass& pass, const BloodMedium& medium, const Blood& blood,
-                            const DropRange& added) {
-    mark_added(pass, medium, blood, added, Squares::tiles);
-    mark_added(pass, medium, blood, added, Squares::blocks);
-    reach(pass);
+void BloodBlocks::drops_came() {
+    tiles_old_ = true;
     steps_planned_ = 0;
 }
 
-void BloodBlocks::before_step(const Pass& pass, const BloodMedium& medium, const Blood& blood) {
-    if (steps_planned_ <= 0 && blood.groups.count() > 0) {
-        plan(pass, medium, blood);
-    }
-    --steps_planned_;
+void BloodBlocks::drops_end(const Pass& pass, const BloodMedium& medium, const Blood& blood,
+                            const DropRange& drops) {
+    const gl::Program& program = begin_mark(pass, medium, BloodShader::mark_of_drops, blood.drops);
+    blood.groups.bind(pass, program, drops);
+    pass.draw_generated(GL_POINTS, static_cast<int>(drops.count) * points_per_drop, 1);
+    drops_came();
 }
 
 void BloodBlocks::bind_plan(const Pass& pass, const gl::Program& program) const {
@@ -391,7 +380,7 @@ void BloodBlocks::end_picture(const Pass& pass) {
 
 void BloodBlocks::ask(std::uint64_t tag) {
     if (answers_.in_flight() < 3) {
-        answers_.start(marks_[now_], tag);
+        answers_.start(marks_, tag);
     }
 }
 

@@ -58,12 +58,15 @@ class BloodBlocks {
     void begin(const Pass& pass, bool everywhere);
     /// Where drops may appear before the next look: UV, and the volume of a drop as large as the place.
     void expect(std::span<const glm::vec4> places);
-    /// Finds out which tiles have come to rest, and plans. `wake`: whatever shows blood is to be stepped.
+    /// Finds out what has happened in each block. `wake`: whatever shows blood is to be stepped.
     void look(const Pass& pass, const BloodMedium& medium, const Blood& blood, bool wake);
-    /// Drops have come to, or leave their blood at, places that no plan has looked at.
-    void add_drops(const Pass& pass, const BloodMedium& medium, const Blood& blood, const DropRange& added);
-    /// Before each step: plans anew if drops may have left the blocks that are planned.
-    void before_step(const Pass& pass, const BloodMedium& medium, const Blood& blood);
+    /// New drops are where no plan has looked.
+    void drops_came();
+    /// Drops leave their blood where they are, and no longer live.
+    void drops_end(const Pass& pass, const BloodMedium& medium, const Blood& blood, const DropRange& drops);
+    /// Plans if there was a look, and `for_step`, before each step, if drops may have left what is planned.
+    /// Returns whether blocks may have settled.
+    [[nodiscard]] bool plan(const Pass& pass, const BloodMedium& medium, const Blood& blood, bool for_step);
 
     /// Draws over blocks with a program in use whose vertex shader is blood_tile.vert.
     void cover(const Pass& pass, const gl::Program& program, Drawn drawn) const;
@@ -80,20 +83,13 @@ class BloodBlocks {
     [[nodiscard]] std::optional<std::uint64_t> all_still();
 
   private:
-    enum class Squares { tiles, blocks };
     void pair_tiles(std::span<const SeamLink> links, std::span<const SeamJump> jumps);
     void pair_blocks(std::span<const SeamLink> links, std::span<const SeamJump> jumps);
-    /// For each drop.
-    [[nodiscard]] static int points_of(Squares squares);
-    /// Puts a program in use that marks what its drops reach, and binds what it marks.
+    /// Puts a program in use that marks the blocks that its drops reach, and binds these.
     [[nodiscard]] const gl::Program& begin_mark(const Pass& pass, const BloodMedium& medium,
-                                                BloodShader shader, const gl::Texture& drops,
-                                                Squares squares) const;
-    void mark_added(const Pass& pass, const BloodMedium& medium, const Blood& blood, const DropRange& added,
-                    Squares squares) const;
-    void mark_alive(const Pass& pass, const BloodMedium& medium, const Blood& blood, Squares squares) const;
+                                                BloodShader shader, const gl::Texture& drops) const;
+    void mark_alive(const Pass& pass, const BloodMedium& medium, const Blood& blood) const;
     void reach(const Pass& pass) const;
-    void plan(const Pass& pass, const BloodMedium& medium, const Blood& blood);
     void draw(const Pass& pass, const gl::Program& program, int first, int last) const;
 
     const gl::Functions* gl_;
@@ -110,15 +106,15 @@ class BloodBlocks {
     gl::Texture first_pair_;
     ListTexture expected_;
     int expected_count_ = 0;
-    gl::Texture surface_;               ///< of blocks: there is one
-    std::array<gl::Texture, 2> marks_;  ///< of tiles: changed, visible
-    gl::Texture across_;                ///< of tiles: beyond a seam from marked ones
-    gl::Texture reach_;                 ///< of tiles: marked or beside marked ones
-    std::array<gl::Texture, 2> held_;   ///< of blocks: blood (blood_held.glsl), changed, shows blood
-    gl::Texture near_;                  ///< of blocks: in reach of blood within their chart
-    std::array<gl::Texture, 2> plan_;   ///< of blocks: to be stepped, to be shown; now, before the last look
+    gl::Texture surface_;              ///< of blocks: there is one
+    gl::Texture marks_;                ///< of tiles: changed, visible
+    gl::Texture across_;               ///< of tiles: beyond a seam from marked ones
+    gl::Texture reach_;                ///< of tiles: marked or beside marked ones
+    std::array<gl::Texture, 2> held_;  ///< of blocks: blood (blood_held.glsl), changed, shows blood
+    gl::Texture near_;                 ///< of blocks: in reach of blood within their chart
+    std::array<gl::Texture, 2> plan_;  ///< of blocks: to be stepped, to be shown; now, before the last look
     gl::Texture stepped_;  ///< of blocks: stepped since the picture was drawn, up to the last look
-    std::array<gl::Framebuffer, 2> marks_target_;
+    gl::Framebuffer marks_target_;
     gl::Framebuffer across_target_;
     gl::Framebuffer reach_target_;
     std::array<gl::Framebuffer, 2> held_target_;
@@ -127,6 +123,8 @@ class BloodBlocks {
     gl::Framebuffer stepped_target_;
     std::size_t now_ = 0;
     int steps_planned_ = 0;  ///< steps for which the plan still holds
+    bool looked_ = false;    ///< since the plan
+    bool tiles_old_ = true;  ///< since then there was a look, or drops came
     bool noted_ = false;     ///< stepped_ holds something
     gl::ReadBack answers_;
 };

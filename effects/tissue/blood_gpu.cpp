@@ -146,14 +146,20 @@ void BloodGpu::find_seams(const Pass& pass) {
 }
 
 void BloodGpu::look_at_tiles(const Pass& pass, const BloodMedium& medium, DropRing& ring, bool wake) {
+    plan(pass, medium, false);  // of the last look, should no step have come since
     groups_.update(ring);
     groups_.ask(pass, ring, drops(), drops_[1 - drops_now_]);
     blocks_.look(pass, medium, blood(), wake);
-    // A block that is no longer stepped must be the same in both textures, which take turns.
-    const gl::Program& copy = use(pass, BloodShader::settle);
-    bind(pass, copy, "u_film", film());
-    film_target_[1 - film_now_].bind();
-    blocks_.cover(pass, copy, BloodBlocks::Drawn::settled);
+}
+
+void BloodGpu::plan(const Pass& pass, const BloodMedium& medium, bool for_step) {
+    if (blocks_.plan(pass, medium, blood(), for_step)) {
+        // A block that is no longer stepped must be the same in both textures, which take turns.
+        const gl::Program& copy = use(pass, BloodShader::settle);
+        bind(pass, copy, "u_film", film());
+        film_target_[1 - film_now_].bind();
+        blocks_.cover(pass, copy, BloodBlocks::Drawn::settled);
+    }
 }
 
 const gl::Program& BloodGpu::use_deposit(const Pass& pass, const BloodMedium& medium,
@@ -191,7 +197,9 @@ void BloodGpu::give_up(const Pass& pass, const BloodMedium& medium, const DropRa
 void BloodGpu::spawn(const Pass& pass, const BloodMedium& medium, std::span<const DropSpawn> spawns,
                      const DropRange& evicted) {
     if (evicted.count > 0) {
-        blocks_.add_drops(pass, medium, blood(), evicted);
+        // Blood is laid down where it is stepped.
+        plan(pass, medium, false);
+        blocks_.drops_end(pass, medium, blood(), evicted);
         give_up(pass, medium, evicted);
     }
     spawn_items_.clear();
@@ -213,9 +221,7 @@ void BloodGpu::spawn(const Pass& pass, const BloodMedium& medium, std::span<cons
     draw_into(pass, spawn_target_[drops_now_], spawn_state);
     pass.draw_generated(GL_POINTS, static_cast<int>(spawns.size()), 1);
     if (!std::ranges::all_of(spawns, &DropSpawn::expected)) {
-        blocks_.add_drops(
-            pass, medium, blood(),
-            {static_cast<std::int64_t>(spawns[0].slot), static_cast<std::int64_t>(spawns.size())});
+        blocks_.drops_came();
     }
 }
 
@@ -277,7 +283,7 @@ void BloodGpu::step_film(const Pass& pass, const BloodMedium& medium) const {
 void BloodGpu::step(const Pass& pass, const BloodMedium& medium, DropRing& ring, std::int64_t step) {
     groups_.update(ring);
     const bool drops_live = groups_.count() > 0;
-    blocks_.before_step(pass, medium, blood());
+    plan(pass, medium, true);
     if (drops_live) {
         move_drops(pass, medium);
     }
@@ -289,6 +295,7 @@ void BloodGpu::step(const Pass& pass, const BloodMedium& medium, DropRing& ring,
 }
 
 void BloodGpu::begin_picture(const Pass& pass, const BloodMedium& medium, Shown before) {
+    plan(pass, medium, false);
     if (before == Shown::unknown) {
         blocks_.forget_picture(pass);
     }

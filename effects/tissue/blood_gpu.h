@@ -39,7 +39,7 @@ class BloodGpu {
     void find_seams(const Pass& pass);
     /// Where drops may appear before the next look: see BloodBlocks.
     void expect(std::span<const glm::vec4> places) { blocks_.expect(places); }
-    /// Looks which tiles have come to rest and which are to be stepped from now on.
+    /// Looks what has come to rest and what is to be stepped from now on.
     void look_at_tiles(const Pass& pass, const BloodMedium& medium, DropRing& ring, bool wake);
     /// New drops; those that stood at their places become film first.
     void spawn(const Pass& pass, const BloodMedium& medium, std::span<const DropSpawn> drops,
@@ -69,6 +69,7 @@ class BloodGpu {
 
   private:
     [[nodiscard]] BloodBlocks::Blood blood() const;
+    void plan(const Pass& pass, const BloodMedium& medium, bool for_step);
     void bind_place(const Pass& pass, const gl::Program& program) const;
     void set_medium(const gl::Program& program, const BloodMedium& medium) const;
     void set_tools(const Pass& pass, const gl::Program& program, const BloodMedium& medium) const;

@@ -32,12 +32,12 @@ std::vector<ProgramDesc> blood_programs() {
             {whole, "tissue/blood_near.frag", {}},
             {"tissue/blood_mark.vert", "tissue/blood_mark.frag", {}},
             {"tissue/blood_mark.vert", "tissue/blood_mark.frag", {"PLACES"}},
-            {"tissue/blood_mark.vert", "tissue/blood_mark.frag", {"SEAMS"}},
+            {"tissue/blood_pairs.vert", "tissue/blood_mark.frag", {}},
             {whole, "tissue/blood_across.frag", {}},
             {tile, "tissue/blood_copy.frag", {"SETTLED"}},
             {whole, "tissue/blood_copy.frag", {}},
             {"tissue/blood_cap.vert", "tissue/blood_cap.frag", {}},
-            {whole, "tissue/drop_lives.frag", {}}};
+            {groups, "tissue/drop_lives.frag", {}}};
 }
 
 const gl::Program& use(const Pass& pass, BloodShader shader) {

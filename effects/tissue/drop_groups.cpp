@@ -75,8 +75,8 @@ void DropGroups::ask(const Pass& pass, DropRing& ring, const gl::Texture& drops,
     const gl::Program& program = use(pass, BloodShader::lives);
     tissue::bind(pass, program, "u_drops", drops);
     tissue::bind(pass, program, "u_drops_before", before);
-    draw_into(pass, lives_target_, gl::overwrite_state);
-    pass.draw_fullscreen();
+    draw_into(pass, lives_target_, {.program_point_size = true});
+    cover(pass, program, 1);
     answers_.start(lives_, ring.ask());
 }
 
@@ -95,8 +95,13 @@ void DropGroups::bind(const Pass& pass, const gl::Program& program, const DropRa
 }
 
 void DropGroups::cover(const Pass& pass, const gl::Program& program) const {
+    cover(pass, program, group_side);
+}
+
+void DropGroups::cover(const Pass& pass, const gl::Program& program, int side) const {
     tissue::bind(pass, program, "u_groups", group_list_.texture());
-    program.set("u_size", glm::vec2(width(), height()));
+    program.set("u_size", glm::vec2(side * lives_.width(), side * lives_.height()));
+    program.set("u_side", side);
     pass.draw_generated(GL_POINTS, static_cast<int>(group_items_.size()), 1);
 }
 

@@ -45,10 +45,12 @@ class DropGroups {
 
   private:
     void bind(const Pass& pass, const gl::Program& program, int first) const;
+    /// `side`: of a group in what is drawn into [texels].
+    void cover(const Pass& pass, const gl::Program& program, int side) const;
 
     const gl::Functions* gl_;
     int capacity_ = 0;
-    gl::Texture lives_;  ///< of groups: which of their drops live
+    gl::Texture lives_;  ///< of groups that are listed: which of their drops live
     gl::Framebuffer lives_target_;
     gl::ReadBack answers_;
     gl::ReadBack::Result answer_;

@@ -11,9 +11,8 @@ int group_at(ivec2 place) {
     return place.x + (place.y << 6);
 }
 
-/// Corner of a group.
-ivec2 group_texel(int group) {
-    return group_side * ivec2(group & 63, group >> 6);
+ivec2 group_place(int group) {
+    return ivec2(group & 63, group >> 6);
 }
 
 /// Place in the ring of the n-th drop that is drawn.
@@ -23,5 +22,5 @@ int drop_place(int n) {
 }
 
 ivec2 drop_texel(int place) {
-    return group_texel(place >> 4) + ivec2(place & 3, (place >> 2) & 3);
+    return group_side * group_place(place >> 4) + ivec2(place & 3, (place >> 2) & 3);
 }
