@@ -54,4 +54,13 @@ Samples operator+(const Samples& a, const Samples& b) {
     return sum;
 }
 
+Samples means(const Samples& samples, std::size_t count, double parts) {
+    Samples result(samples.size() / count);
+    for (std::size_t i = 0; i < result.size() * count; ++i) {
+        result[i / count].time_ms += samples[i].time_ms / parts;
+        result[i / count].work_ms += samples[i].work_ms / parts;
+    }
+    return result;
+}
+
 }  // namespace viscera::app

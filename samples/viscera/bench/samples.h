@@ -26,5 +26,7 @@ struct Spread {
 [[nodiscard]] double ratio(const Samples& samples, const Samples& base, double Sample::*what);
 /// Sample by sample.
 [[nodiscard]] Samples operator+(const Samples& a, const Samples& b);
+/// Means of `parts` over `count` samples in a row each; what is left over is dropped.
+[[nodiscard]] Samples means(const Samples& samples, std::size_t count, double parts);
 
 }  // namespace viscera::app
