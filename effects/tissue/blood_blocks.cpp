@@ -1,10 +1,10 @@
 #include "effects/tissue/blood_blocks.h"
 
 #include <algorithm>
-#include <iterator>
 #include <utility>
 
 #include "effects/tissue/blood_programs.h"
+#include "effects/tissue/seam_reach.h"
 #include "engine/core/pixel_index.h"
 #include "engine/runtime/pass.h"
 
@@ -20,15 +20,10 @@ constexpr float steps_per_look = 8.0F;  // at most
 // A film that creeps more slowly stands [mm/s].
 constexpr float still_mm_s = 5e-4F;
 constexpr int points_per_drop = 2;  // as blood_mark.vert
-// Marks are points as large as what they mark.
-constexpr gl::RasterState mark_state = [] {
+// Marks are points as large as what they mark, beside what the film does.
+constexpr gl::RasterState drop_mark_state = [] {
     gl::RasterState state = gl::max_blend_state;
     state.program_point_size = true;
-    return state;
-}();
-// Where drops are, beside what the film does.
-constexpr gl::RasterState drop_mark_state = [] {
-    gl::RasterState state = mark_state;
     state.colour_mask = {false, false, false, true};
     return state;
 }();
@@ -43,28 +38,23 @@ std::array<gl::Framebuffer, 2> targets_of(const gl::Functions& gl, const std::ar
     return {gl::Framebuffer(gl, textures[0], label), gl::Framebuffer(gl, textures[1], label)};
 }
 
-int divided_up(int a, int b) {
-    return (a + b - 1) / b;
-}
-
 }  // namespace
 
 BloodBlocks::BloodBlocks(const gl::Functions& gl, int size)
     : gl_(&gl),
       size_(size),
-      tiles_(divided_up(size, tile_side)),
-      blocks_(divided_up(size, block_side)),
+      tiles_(SquareGrid{size, tile_side}.count()),
+      blocks_(SquareGrid{size, block_side}.count()),
+      first_tile_(gl::Texture::make_2d(gl, tiles_, tiles_, PixelFormat::rg32f, "tiles across seams")),
       first_pair_(gl::Texture::make_2d(gl, blocks_, blocks_, PixelFormat::rg32f, "pairs of blocks")),
       surface_(gl::Texture::make_2d(gl, blocks_, blocks_, PixelFormat::r8, "blocks with a surface")),
       marks_(gl::Texture::make_2d(gl, tiles_, tiles_, PixelFormat::rg8, "tiles of blood")),
-      across_(gl::Texture::make_2d(gl, tiles_, tiles_, PixelFormat::r8, "tiles of blood across seams")),
       reach_(gl::Texture::make_2d(gl, tiles_, tiles_, PixelFormat::rg8, "tiles in reach of blood")),
       held_(pair_of(gl, blocks_, PixelFormat::rgba8, "blocks of blood")),
       near_(gl::Texture::make_2d(gl, blocks_, blocks_, PixelFormat::rg8, "blocks near blood")),
       plan_(pair_of(gl, blocks_, PixelFormat::rg8, "blocks to be stepped")),
       stepped_(gl::Texture::make_2d(gl, blocks_, blocks_, PixelFormat::r8, "blocks stepped")),
       marks_target_(gl, marks_, "tiles of blood"),
-      across_target_(gl, across_, "tiles of blood across seams"),
       reach_target_(gl, reach_, "tiles in reach of blood"),
       held_target_(targets_of(gl, held_, "blocks of blood")),
       near_target_(gl, near_, "blocks near blood"),
@@ -72,98 +62,14 @@ BloodBlocks::BloodBlocks(const gl::Functions& gl, int size)
       stepped_target_(gl, stepped_, "blocks stepped"),
       answers_(gl) {}
 
-void BloodBlocks::pair_tiles(std::span<const SeamLink> links, std::span<const SeamJump> jumps) {
-    std::vector<std::array<int, 4>> found;
-    const auto add = [&](int a, int b) {
-        const std::array<int, 4> pair{a % size_ / tile_side, a / size_ / tile_side, b % size_ / tile_side,
-                                      b / size_ / tile_side};
-        // What flows one way must be seen from the other side as well.
-        found.push_back(pair);
-        found.push_back({pair[2], pair[3], pair[0], pair[1]});
-    };
-    for (const SeamLink& link : links) {
-        add(static_cast<int>(link.from), static_cast<int>(link.to));
-    }
-    for (const SeamJump& jump : jumps) {
-        add(jump.gutter, jump.to);
-    }
-    std::ranges::sort(found);
-    found.erase(std::ranges::unique(found).begin(), found.end());
-    std::vector<glm::vec4> pairs;
-    std::ranges::transform(found, std::back_inserter(pairs), [](const std::array<int, 4>& pair) {
-        return glm::vec4(pair[0], pair[1], pair[2], pair[3]);
-    });
-    tile_pair_count_ = static_cast<int>(pairs.size());
-    tile_pairs_.upload(*gl_, pairs, "tiles that seams join");
-}
-
-void BloodBlocks::pair_blocks(std::span<const SeamLink> links, std::span<const SeamJump> jumps) {
-    // What a block does to the other one: as blood_across.frag. Of two ways in which blood comes the lower
-    // needs less.
-    enum Kind { from_where_it_lies = 1, from_where_it_runs_far = 2, shown_by_gutters = 4 };
-    std::vector<std::array<int, 3>> found;  // to, from, kind
-    const auto block = [&](int texel, const glm::ivec2& off) {
-        const glm::ivec2 at =
-            glm::clamp(glm::ivec2(texel % size_, texel / size_) + off, 0, size_ - 1) / block_side;
-        return at.y * blocks_ + at.x;
-    };
-    const auto add = [&](int from, int to, Kind kind) {
-        if (from != to) {
-            found.push_back({to, from, kind});
-        }
-    };
-    const auto flow = [&](int from, int to, bool towards) {
-        const int here = block(from, glm::ivec2(0));
-        const int there = block(to, glm::ivec2(0));
-        add(here, there, from_where_it_lies);
-        for (int i = 0; i < 9; ++i) {
-            const glm::ivec2 way = glm::ivec2(i % 3 - 1, i / 3 - 1) * past_seam;
-            add(here, block(to, way), from_where_it_runs_far);
-            if (towards) {
-                add(block(from, way), there, from_where_it_runs_far);
-            }
-        }
-    };
-    for (const SeamLink& link : links) {
-        flow(static_cast<int>(link.from), static_cast<int>(link.to), true);
-        flow(static_cast<int>(link.to), static_cast<int>(link.from), true);
-    }
-    // A drop leaves blood where the gutter below it leads, and the gutter shows what is there.
-    for (const SeamJump& jump : jumps) {
-        flow(jump.gutter, jump.to, false);
-        add(block(jump.to, glm::ivec2(0)), block(jump.gutter, glm::ivec2(0)), shown_by_gutters);
-    }
-    std::ranges::sort(found);
-    found.erase(std::ranges::unique(found).begin(), found.end());
-    std::vector<glm::vec4> pairs;  // four to an item
-    std::vector<glm::vec2> first(static_cast<std::size_t>(blocks_) * static_cast<std::size_t>(blocks_));
-    int in_item = 0;
-    for (std::size_t i = 0; i < found.size();) {
-        const auto [to, from, lowest] = found[i];
-        int kind = lowest;
-        for (++i; i < found.size() && found[i][0] == to && found[i][1] == from; ++i) {
-            kind |= found[i][2] & shown_by_gutters;
-        }
-        glm::vec2& of_block = first[static_cast<std::size_t>(to)];
-        if (of_block.y == 0.0F) {
-            of_block.x = static_cast<float>(pairs.size());
-            in_item = 0;
-        }
-        if (in_item == 0) {
-            pairs.emplace_back(0.0F);
-            of_block.y += 1.0F;
-        }
-        pairs.back()[in_item] = static_cast<float>(kind + (from % blocks_ << 3) + (from / blocks_ << 12));
-        in_item = (in_item + 1) % 4;
-    }
-    block_pairs_.upload(*gl_, pairs, "blocks that seams join");
-    first_pair_.upload(std::as_bytes(std::span(first)));
-}
-
 void BloodBlocks::lie_on(const Image& position, std::span<const SeamLink> links,
                          std::span<const SeamJump> jumps) {
-    pair_tiles(links, jumps);
-    pair_blocks(links, jumps);
+    const SeamReach tiles = reach_beside_seams({size_, tile_side}, links, jumps);
+    tiles_across_.upload(*gl_, tiles.items, "tiles across seams");
+    first_tile_.upload(std::as_bytes(std::span(tiles.first)));
+    const SeamReach blocks = reach_across_seams({size_, block_side}, past_seam, links, jumps);
+    block_pairs_.upload(*gl_, blocks.items, "blocks that seams join");
+    first_pair_.upload(std::as_bytes(std::span(blocks.first)));
     const auto count = static_cast<std::size_t>(blocks_);
     std::vector<unsigned char> surface(count * count, 0);
     std::vector<unsigned char> cells(count * count, 0);
@@ -201,7 +107,6 @@ void BloodBlocks::begin(const Pass& pass, bool everywhere) {
         held_target_[i].clear_colour(0, {value, value, 0.0F, 0.0F});
         clear(pass, plan_target_[i], value);
     }
-    clear(pass, across_target_);
     clear(pass, stepped_target_);
     noted_ = false;
     steps_planned_ = 0;
@@ -250,17 +155,10 @@ void BloodBlocks::reach(const Pass& pass) const {
     bind(pass, scan, "u_blocks", held_[now_]);
     draw_into(pass, marks_target_, gl::overwrite_state);
     pass.draw_fullscreen();
-    if (tile_pair_count_ > 0) {
-        const gl::Program& pairs = use(pass, BloodShader::mark_of_tiles);
-        clear(pass, across_target_);
-        gl::apply(pass.gl(), mark_state, {0, 0, tiles_, tiles_});
-        bind(pass, pairs, "u_pairs", tile_pairs_.texture());
-        bind(pass, pairs, "u_tiles", marks_);
-        pass.draw_generated(GL_POINTS, tile_pair_count_, 1);
-    }
     const gl::Program& program = use(pass, BloodShader::reach);
     bind(pass, program, "u_tiles", marks_);
-    bind(pass, program, "u_across", across_);
+    bind(pass, program, "u_first", first_tile_);
+    bind(pass, program, "u_across", tiles_across_.texture());
     draw_into(pass, reach_target_, gl::overwrite_state);
     pass.draw_fullscreen();
 }

@@ -83,8 +83,6 @@ class BloodBlocks {
     [[nodiscard]] std::optional<std::uint64_t> all_still();
 
   private:
-    void pair_tiles(std::span<const SeamLink> links, std::span<const SeamJump> jumps);
-    void pair_blocks(std::span<const SeamLink> links, std::span<const SeamJump> jumps);
     /// Puts a program in use that marks the blocks that its drops reach, and binds these.
     [[nodiscard]] const gl::Program& begin_mark(const Pass& pass, const BloodMedium& medium,
                                                 BloodShader shader, const gl::Texture& drops) const;
@@ -100,22 +98,20 @@ class BloodBlocks {
     int listed_ = 0;
     int without_gutters_ = 0;
     int with_cells_ = 0;
-    ListTexture tile_pairs_;  ///< that seams join: x, y here, x, y across
-    int tile_pair_count_ = 0;
+    ListTexture tiles_across_;  ///< by the tile that is reached: see blood_reach.frag
+    gl::Texture first_tile_;
     ListTexture block_pairs_;  ///< by the block that is reached: see blood_across.frag
     gl::Texture first_pair_;
     ListTexture expected_;
     int expected_count_ = 0;
     gl::Texture surface_;              ///< of blocks: there is one
     gl::Texture marks_;                ///< of tiles: changed, visible
-    gl::Texture across_;               ///< of tiles: beyond a seam from marked ones
     gl::Texture reach_;                ///< of tiles: marked or beside marked ones
     std::array<gl::Texture, 2> held_;  ///< of blocks: blood (blood_held.glsl), changed, shows blood
     gl::Texture near_;                 ///< of blocks: in reach of blood within their chart
     std::array<gl::Texture, 2> plan_;  ///< of blocks: to be stepped, to be shown; now, before the last look
     gl::Texture stepped_;  ///< of blocks: stepped since the picture was drawn, up to the last look
     gl::Framebuffer marks_target_;
-    gl::Framebuffer across_target_;
     gl::Framebuffer reach_target_;
     std::array<gl::Framebuffer, 2> held_target_;
     gl::Framebuffer near_target_;

@@ -32,7 +32,6 @@ std::vector<ProgramDesc> blood_programs() {
             {whole, "tissue/blood_near.frag", {}},
             {"tissue/blood_mark.vert", "tissue/blood_mark.frag", {}},
             {"tissue/blood_mark.vert", "tissue/blood_mark.frag", {"PLACES"}},
-            {"tissue/blood_pairs.vert", "tissue/blood_mark.frag", {}},
             {whole, "tissue/blood_across.frag", {}},
             {tile, "tissue/blood_copy.frag", {"SETTLED"}},
             {whole, "tissue/blood_copy.frag", {}},

@@ -42,7 +42,6 @@ enum class BloodShader : std::size_t {
     near,
     mark_of_drops,
     mark_of_places,
-    mark_of_tiles,
     across,
     settle,
     copy,
