@@ -162,9 +162,9 @@ void BloodGpu::plan(const Pass& pass, const BloodMedium& medium, bool for_step) 
     }
 }
 
-const gl::Program& BloodGpu::use_deposit(const Pass& pass, const BloodMedium& medium,
+const gl::Program& BloodGpu::use_deposit(const Pass& pass, const BloodMedium& medium, BloodShader shader,
                                          const gl::Texture& source, const gl::Texture& areas) const {
-    const gl::Program& program = use(pass, BloodShader::deposited);
+    const gl::Program& program = use(pass, shader);
     blocks_.bind_plan(pass, program);
     bind(pass, program, "u_film", areas);
     jumps_->bind(pass, program);
@@ -175,10 +175,9 @@ const gl::Program& BloodGpu::use_deposit(const Pass& pass, const BloodMedium& me
 }
 
 void BloodGpu::deposit(const Pass& pass, const BloodMedium& medium, std::int64_t step) const {
-    const gl::Program& program = use_deposit(pass, medium, deposit_, film());
+    const gl::Program& program = use_deposit(pass, medium, BloodShader::deposited, deposit_, film());
     groups_.bind(pass, program);
     program.set("u_salt", static_cast<int>(step & 0xffffff));
-    program.set("u_whole", false);
     draw_into(pass, film_target_[1 - film_now_], gl::add_blend_state);
     pass.draw_generated(GL_POINTS, groups_.count() * deposit_points, 1);
 }
@@ -186,10 +185,10 @@ void BloodGpu::deposit(const Pass& pass, const BloodMedium& medium, std::int64_t
 void BloodGpu::give_up(const Pass& pass, const BloodMedium& medium, const DropRange& evicted) const {
     // Into the texture that is read next: what is added to it is owed to the film in the next step. The
     // other one, which stands for the areas here, has the same.
-    const gl::Program& program = use_deposit(pass, medium, drops(), film_[1 - film_now_]);
+    const gl::Program& program =
+        use_deposit(pass, medium, BloodShader::given_up, drops(), film_[1 - film_now_]);
     groups_.bind(pass, program, evicted);
     program.set("u_salt", 0);
-    program.set("u_whole", true);
     draw_into(pass, film_target_[film_now_], gl::add_blend_state);
     pass.draw_generated(GL_POINTS, static_cast<int>(evicted.count) * deposit_points, 1);
 }
@@ -303,10 +302,7 @@ void BloodGpu::begin_picture(const Pass& pass, const BloodMedium& medium, Shown 
         return;
     }
     const gl::Program& program = use(pass, BloodShader::cap);
-    // Which texels are gutters both textures of the film know; the other one is not waited for.
-    bind(pass, program, "u_areas", film_[1 - film_now_]);
-    bind(pass, program, "u_film", film());
-    pass.bind(program, "u_right", "flow_right");
+    bind_place(pass, program);
     blocks_.bind_plan(pass, program);
     bind(pass, program, "u_drops", drops());
     pass.bind(program, "u_position", "position");

@@ -76,7 +76,8 @@ class BloodGpu {
     void deposit(const Pass& pass, const BloodMedium& medium, std::int64_t step) const;
     void give_up(const Pass& pass, const BloodMedium& medium, const DropRange& evicted) const;
     [[nodiscard]] const gl::Program& use_deposit(const Pass& pass, const BloodMedium& medium,
-                                                 const gl::Texture& source, const gl::Texture& areas) const;
+                                                 BloodShader shader, const gl::Texture& source,
+                                                 const gl::Texture& areas) const;
     void move_drops(const Pass& pass, const BloodMedium& medium);
     void cross_seams(const Pass& pass, const BloodMedium& medium) const;
     void step_film(const Pass& pass, const BloodMedium& medium) const;

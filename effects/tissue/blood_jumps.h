@@ -22,7 +22,7 @@ class BloodJumps {
     /// Of a surface that is new or has moved, whose film knows its cells. Leaves a framebuffer of its own
     /// bound.
     void take(const Pass& pass, const gl::Texture& film) const;
-    /// For a program with blood_place.glsl.
+    /// For a program with blood_place.glsl or blood_cap.vert.
     void bind(const Pass& pass, const gl::Program& program) const;
 
   private:

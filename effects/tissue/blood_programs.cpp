@@ -24,6 +24,7 @@ std::vector<ProgramDesc> blood_programs() {
             {groups, "tissue/blood_move.frag", {}},
             {groups, "tissue/blood_move.frag", {"TOOLS"}},
             {"tissue/blood_deposit.vert", "tissue/blood_add.frag", {}},
+            {"tissue/blood_deposit.vert", "tissue/blood_add.frag", {"WHOLE"}},
             {"tissue/blood_spawn.vert", "tissue/blood_spawn.frag", {}},
             {"tissue/blood_spawn.vert", "tissue/blood_spawn.frag", {"ENERGY"}},
             {whole, "tissue/blood_scan.frag", {}},

@@ -34,6 +34,7 @@ enum class BloodShader : std::size_t {
     move,
     move_tools,
     deposited,
+    given_up,
     spawned,
     spawned_energy,
     scan,

@@ -4,8 +4,8 @@
 // A drop as it is seen: a point around it in texture space, and one for each of four ways in which a seam cuts it. One that is narrower than three texels is
 // drawn as wide as they are, and so much flatter: texels that sample it here and there would show dots.
 uniform sampler2D u_drops;
-uniform sampler2D u_areas;  // a film, of which only w is read: -1 in gutters
-uniform sampler2D u_right;  // of gutters: the texel in which the surface goes on
+uniform sampler2D u_numbers;  // of gutters in the list, or -1
+uniform sampler2D u_jumps;    // list of blood_jump.frag
 uniform sampler2D u_position;
 uniform sampler2D u_metric;
 flat out vec4 v_cap;      // place [mm], radius [mm]
@@ -46,7 +46,7 @@ void main() {
     if (!(drop.z > 0.0)) {
         return;
     }
-    ivec2 size = textureSize(u_areas, 0);
+    ivec2 size = textureSize(u_numbers, 0);
     vec2 centre = drop.xy * vec2(size);
     ivec2 at = clamp(ivec2(floor(centre)), ivec2(0), size - 1);
     float own = drop_radius(drop.z);
@@ -61,14 +61,16 @@ void main() {
         vec2 towards = way < 2 ? vec2(float(1 - 2 * way), 0.0) : vec2(0.0, float(5 - 2 * way));
         float far = dot(abs(towards), extent);
         float next = min(gutter_width, far);
+        float gutter = -1.0;
         bool more = true;
         while (more) {
             ivec2 probed = clamp(ivec2(floor(centre + next * towards)), ivec2(0), size - 1);
-            drawn = texelFetch(u_areas, probed, 0).w < 0.0;
-            centre = drawn ? texelFetch(u_right, probed, 0).xy + 0.5 : centre;
-            more = !drawn && next < far;
+            gutter = texelFetch(u_numbers, probed, 0).r;
+            more = gutter < 0.0 && next < far;
             next = min(next + gutter_width, far);
         }
+        drawn = gutter >= 0.0;
+        centre = drawn ? list_item(u_jumps, int(gutter)).xy : centre;
         extent = 2.0 * extent_of(clamp(ivec2(floor(centre)), ivec2(0), size - 1), radius);
     }
     if (drawn) {

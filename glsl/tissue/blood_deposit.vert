@@ -6,10 +6,9 @@
 // Lays what drops leave behind onto the film: four points for each drop within its outline, another four in each step, so that in time
 // all of the outline is covered alike. A point changes one texel by the volume over that texel's area: no volume is lost, whatever the
 // map does to lengths.
-uniform sampler2D u_deposit;  // of blood_move.frag; or the drops themselves, which then go into the film as they are
+uniform sampler2D u_deposit;  // of blood_move.frag; with WHOLE the drops themselves, which go into the film as they are
 uniform sampler2D u_metric;
-uniform int u_salt;    // of the step
-uniform bool u_whole;  // u_deposit holds drops
+uniform int u_salt;  // of the step
 flat out vec2 v_added;
 
 const int points = 4;
@@ -19,10 +18,10 @@ void main() {
     int k = gl_VertexID % points;
     vec4 deposit = texelFetch(u_deposit, drop_texel(index), 0);
     vec2 size = vec2(textureSize(u_film, 0));
-    if (u_whole) {
-        deposit.xy *= size;
-        deposit.w = drop_radius(max(deposit.z, 0.0));
-    }
+#ifdef WHOLE
+    deposit.xy *= size;
+    deposit.w = drop_radius(max(deposit.z, 0.0));
+#endif
     gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
     v_added = vec2(0.0);
     if (deposit.z > 0.0) {
