@@ -23,12 +23,6 @@ std::array<gl::Texture, 2> pair_of(const gl::Functions& gl, int width, int heigh
             gl::Texture::make_2d(gl, width, height, PixelFormat::rgba32f, label)};
 }
 
-gl::Framebuffer target_of(const gl::Functions& gl, const gl::Texture& first, const gl::Texture& second,
-                          const char* label) {
-    const std::array<const gl::Texture*, 2> colours{&first, &second};
-    return {gl, colours, nullptr, label};
-}
-
 }  // namespace
 
 BloodGpu::BloodGpu(const gl::Functions& gl, int size, int max_drops)

@@ -1,7 +1,6 @@
 #include "effects/tissue/blood_ground.h"
 
 #include <algorithm>
-#include <array>
 
 #include "effects/tissue/blood_programs.h"
 #include "engine/runtime/pass.h"
@@ -24,8 +23,7 @@ void BloodGround::take(const Pass& pass, const BloodBlocks& blocks, const gl::Te
         faces_ = gl::Texture::make_2d(pass.gl(), in_row * faces_of_block, rows, PixelFormat::rgba32f,
                                       "faces by blocks");
         faces_target_.emplace(pass.gl(), *faces_, "faces by blocks");
-        const std::array<const gl::Texture*, 2> colours{&*lengths_, &*across_};
-        target_.emplace(pass.gl(), colours, nullptr, "ground of blood by blocks");
+        target_ = target_of(pass.gl(), *lengths_, *across_, "ground of blood by blocks");
     }
     const gl::Program& program = use(pass, BloodShader::ground);
     bind(pass, program, "u_list", blocks.list());

@@ -1,6 +1,5 @@
 #include "effects/tissue/blood_jumps.h"
 
-#include <array>
 #include <vector>
 
 #include "effects/tissue/blood_programs.h"
@@ -35,11 +34,6 @@ gl::Texture beside(const gl::Functions& gl, const ListTexture& list, std::string
     return gl::Texture::make_2d(gl, list.texture().width(), list.rows(), PixelFormat::rgba32f, label);
 }
 
-gl::Framebuffer target_of(const gl::Functions& gl, const gl::Texture& first, const gl::Texture& second) {
-    const std::array<const gl::Texture*, 2> colours{&first, &second};
-    return {gl, colours, nullptr, "where gutters lead"};
-}
-
 }  // namespace
 
 BloodJumps::BloodJumps(const gl::Functions& gl, std::span<const int> gutters, int size)
@@ -47,7 +41,7 @@ BloodJumps::BloodJumps(const gl::Functions& gl, std::span<const int> gutters, in
       gutters_(list_of(gl, gutters, size)),
       jumps_(beside(gl, gutters_, "where gutters lead")),
       slopes_(beside(gl, gutters_, "slopes of gutters")),
-      target_(target_of(gl, jumps_, slopes_)) {}
+      target_(target_of(gl, jumps_, slopes_, "where gutters lead")) {}
 
 void BloodJumps::take(const Pass& pass, const gl::Texture& film) const {
     const gl::Program& program = use(pass, BloodShader::jump);

@@ -1,5 +1,7 @@
 #include "effects/tissue/blood_programs.h"
 
+#include <array>
+
 #include "engine/runtime/pass.h"
 
 namespace viscera::tissue {
@@ -52,6 +54,12 @@ void draw_into(const Pass& pass, const gl::Framebuffer& target, const gl::Raster
 void clear(const Pass& pass, const gl::Framebuffer& target, float value) {
     draw_into(pass, target, gl::overwrite_state);
     target.clear_colour(0, {value, value, value, value});
+}
+
+gl::Framebuffer target_of(const gl::Functions& gl, const gl::Texture& first, const gl::Texture& second,
+                          std::string_view label) {
+    const std::array<const gl::Texture*, 2> colours{&first, &second};
+    return {gl, colours, nullptr, label};
 }
 
 void bind(const Pass& pass, const gl::Program& program, std::string_view uniform,

@@ -57,6 +57,9 @@ enum class BloodShader : std::size_t {
 /// Binds a target, all of it, and sets the raster state.
 void draw_into(const Pass& pass, const gl::Framebuffer& target, const gl::RasterState& state);
 void clear(const Pass& pass, const gl::Framebuffer& target, float value = 0.0F);
+/// Of two textures that are drawn into at once.
+[[nodiscard]] gl::Framebuffer target_of(const gl::Functions& gl, const gl::Texture& first,
+                                        const gl::Texture& second, std::string_view label);
 /// Texels as they are.
 void bind(const Pass& pass, const gl::Program& program, std::string_view uniform, const gl::Texture& texture);
 
