@@ -49,8 +49,8 @@ BloodBlocks::Blood BloodGpu::blood() const {
     return {film(), film_[1 - film_now_], drops(), groups_};
 }
 
-void BloodGpu::bind_place(const Pass& pass, const gl::Program& program) const {
-    bind(pass, program, "u_film", film());
+void BloodGpu::bind_place(const Pass& pass, const gl::Program& program, const gl::Texture& film) const {
+    bind(pass, program, "u_film", film);
     jumps_->bind(pass, program);
 }
 
@@ -160,8 +160,7 @@ const gl::Program& BloodGpu::use_deposit(const Pass& pass, const BloodMedium& me
                                          const gl::Texture& source, const gl::Texture& areas) const {
     const gl::Program& program = use(pass, shader);
     blocks_.bind_plan(pass, program);
-    bind(pass, program, "u_film", areas);
-    jumps_->bind(pass, program);
+    bind_place(pass, program, areas);
     bind(pass, program, "u_deposit", source);
     pass.bind(program, "u_metric", "metric");
     set_medium(program, medium);
@@ -203,7 +202,7 @@ void BloodGpu::spawn(const Pass& pass, const BloodMedium& medium, std::span<cons
     spawn_.upload(*gl_, spawn_items_, "new drops of blood");
     const bool energy = pass.has("energy");
     const gl::Program& program = use(pass, energy ? BloodShader::spawned_energy : BloodShader::spawned);
-    bind_place(pass, program);
+    bind_place(pass, program, film());
     bind(pass, program, "u_spawn", spawn_.texture());
     pass.bind(program, "u_metric", "metric");
     if (energy) {
@@ -221,7 +220,7 @@ void BloodGpu::spawn(const Pass& pass, const BloodMedium& medium, std::span<cons
 void BloodGpu::move_drops(const Pass& pass, const BloodMedium& medium) {
     const gl::Program& program =
         use(pass, medium.tools.empty() ? BloodShader::move : BloodShader::move_tools);
-    bind_place(pass, program);
+    bind_place(pass, program, film());
     blocks_.bind_plan(pass, program);
     bind(pass, program, "u_drops", drops());
     pass.bind(program, "u_gravity", "gravity");
@@ -296,7 +295,7 @@ void BloodGpu::begin_picture(const Pass& pass, const BloodMedium& medium, Shown 
         return;
     }
     const gl::Program& program = use(pass, BloodShader::cap);
-    bind_place(pass, program);
+    bind_place(pass, program, film());
     blocks_.bind_plan(pass, program);
     bind(pass, program, "u_drops", drops());
     pass.bind(program, "u_position", "position");

@@ -70,7 +70,7 @@ class BloodGpu {
   private:
     [[nodiscard]] BloodBlocks::Blood blood() const;
     void plan(const Pass& pass, const BloodMedium& medium, bool for_step);
-    void bind_place(const Pass& pass, const gl::Program& program) const;
+    void bind_place(const Pass& pass, const gl::Program& program, const gl::Texture& film) const;
     void set_medium(const gl::Program& program, const BloodMedium& medium) const;
     void set_tools(const Pass& pass, const gl::Program& program, const BloodMedium& medium) const;
     void deposit(const Pass& pass, const BloodMedium& medium, std::int64_t step) const;

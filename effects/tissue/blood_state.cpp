@@ -3,6 +3,7 @@
 #include "engine/core/hash.h"
 
 namespace viscera::tissue {
+
 std::shared_ptr<BloodState> BloodState::find(Assets& assets, std::string_view name) {
     return assets.shared<BloodState>(Hash().add(name).value(), [] { return std::make_shared<BloodState>(); });
 }

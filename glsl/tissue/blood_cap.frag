@@ -12,6 +12,6 @@ void main() {
     float inside = 1.0 - dot(away, away) / (v_cap.w * v_cap.w);
     vec4 film = texelFetch(u_film, ivec2(gl_FragCoord.xy), 0);
     // Drops stand on the film. What is not stepped is not drawn again before the next picture.
-    bool drawn = inside > 0.0 && film.w != 0.0 && is_drawn(texelFetch(u_plan, ivec2(gl_FragCoord.xy) >> 3, 0).r);
+    bool drawn = inside > 0.0 && film.w != 0.0 && is_drawn_in(ivec2(gl_FragCoord.xy) >> 3);
     o_height = drawn ? max(film.x + film.y, 0.0) + v_height * inside : -1.0;
 }

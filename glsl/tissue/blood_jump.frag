@@ -10,7 +10,8 @@ layout(location = 1) out vec4 o_slopes;  // how that changes along u and along v
 ivec2 last;
 
 bool is_surface(vec2 texel) {
-    return texelFetch(u_film, clamp(ivec2(floor(texel)), ivec2(0), last), 0).w > 0.0;
+    ivec2 at = ivec2(floor(texel));
+    return at == clamp(at, ivec2(0), last) && texelFetch(u_film, clamp(at, ivec2(0), last), 0).w > 0.0;
 }
 
 /// The seam's map is linear between the centres of gutters; a neighbour in the same gutter gives its slope.

@@ -18,3 +18,7 @@ bool steps_at(ivec2 texel) {
 bool is_drawn(float plan) {
     return plan > 0.5 * plan_gutters;
 }
+
+bool is_drawn_in(ivec2 block) {
+    return is_drawn(texelFetch(u_plan, block, 0).r);
+}

@@ -36,7 +36,7 @@ void main() {
     vec2 longest = vec2(0.0);
     vec4 beyond = vec4(0.0);
     vec4 beyond_dry = vec4(0.0);
-    bool stepped = is_drawn(texelFetch(u_plan, block, 0).r);
+    bool stepped = is_drawn_in(block);
     ivec2 last = textureSize(u_film, 0) - 1;
     int count = stepped ? block_side * block_side : 0;
     float dry = u_rest + (1.0 - 4.0 * wet_share) * u_pinning;
