@@ -73,27 +73,33 @@ void BloodBlocks::lie_on(const Image& position, std::span<const SeamLink> links,
     const auto count = static_cast<std::size_t>(blocks_);
     std::vector<unsigned char> surface(count * count, 0);
     std::vector<unsigned char> cells(count * count, 0);
-    std::vector<unsigned char> gutters(count * count, 0);
+    std::vector<unsigned char> seams(count * count, 0);
     for (int y = 0; y < size_; ++y) {
         for (int x = 0; x < size_; ++x) {
             const std::size_t block = pixel_index(x / block_side, y / block_side, blocks_);
             const float coverage = position.at(x, y, 3);
             surface[block] = coverage > 0.0F ? 255 : surface[block];
             cells[block] = coverage > 0.75F ? 1 : cells[block];
-            gutters[block] = coverage > 0.0F && coverage < 0.75F ? 1 : gutters[block];
+            seams[block] = coverage > 0.0F && coverage < 0.75F ? 1 : seams[block];
         }
     }
     surface_.upload(std::as_bytes(std::span(surface)));
+    const SquareGrid grid{size_, block_side};
+    for (const SeamLink& link : links) {
+        for (const float cell : {link.from, link.to}) {
+            seams[static_cast<std::size_t>(grid.square_of(static_cast<int>(cell)))] = 1;
+        }
+    }
     std::vector<glm::vec4> list;
-    const auto add = [&](bool with_cells, bool with_gutters) {
+    const auto add = [&](bool with_cells, bool at_seams) {
         for (std::size_t i = 0; i < surface.size(); ++i) {
-            if (surface[i] != 0 && (cells[i] != 0) == with_cells && (gutters[i] != 0) == with_gutters) {
+            if (surface[i] != 0 && (cells[i] != 0) == with_cells && (seams[i] != 0) == at_seams) {
                 list.emplace_back(i % count, i / count, 0.0F, 0.0F);
             }
         }
         return static_cast<int>(list.size());
     };
-    without_gutters_ = add(true, false);
+    without_seams_ = add(true, false);
     with_cells_ = add(true, true);
     add(false, true);
     listed_ = static_cast<int>(list.size());
@@ -254,8 +260,11 @@ void BloodBlocks::cover(const Pass& pass, const gl::Program& program, Drawn draw
         bind(pass, program, "u_plan_before", plan_[1 - now_]);
     }
     program.set("u_with_cells", with_cells_);
-    draw(pass, program, drawn == Drawn::gutters ? without_gutters_ : 0,
-         drawn == Drawn::cells ? with_cells_ : listed_);
+    const bool from_seams = drawn == Drawn::at_seams || drawn == Drawn::gutters;
+    draw(pass, program, from_seams ? without_seams_ : 0,
+         drawn == Drawn::beside_none ? without_seams_
+         : drawn == Drawn::at_seams  ? with_cells_
+                                     : listed_);
 }
 
 void BloodBlocks::cover_changed(const Pass& pass, const gl::Program& program, bool whole) const {

@@ -41,7 +41,8 @@ class BloodBlocks {
         const DropGroups& groups;
     };
     enum class Drawn {
-        cells,    ///< to be stepped, those with cells
+        beside_none,  ///< to be stepped, with cells, none of them at a seam
+        at_seams,     ///< to be stepped, the others with cells
         gutters,  ///< of which nothing but gutters changes
         settled,  ///< stepped until the last look
     };
@@ -96,7 +97,7 @@ class BloodBlocks {
     int blocks_ = 0;    ///< along each side
     ListTexture list_;  ///< see list()
     int listed_ = 0;
-    int without_gutters_ = 0;
+    int without_seams_ = 0;
     int with_cells_ = 0;
     ListTexture tiles_across_;  ///< by the tile that is reached: see blood_reach.frag
     gl::Texture first_tile_;

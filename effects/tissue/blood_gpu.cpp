@@ -96,7 +96,7 @@ void BloodGpu::take_surface(const Pass& pass, const BloodMedium& medium, bool em
         pass.draw_fullscreen();
         film_now_ = i == 0 ? 1 - film_now_ : film_now_;
     }
-    ground_.take(pass, blocks_, film(), seams_->place_of_cell);
+    ground_.take(pass, blocks_, film(), seams_->first_of_cell);
     jumps_->take(pass, film());
     if (empty) {
         for (const gl::Framebuffer& target : spawn_target_) {
@@ -105,7 +105,7 @@ void BloodGpu::take_surface(const Pass& pass, const BloodMedium& medium, bool em
         }
         blocks_.begin(pass, spill);
     }
-    if (!seams_->empty()) {
+    if (!seams_->empty) {
         const bool relief = medium.relief_pull > 0.0F;
         const gl::Program& links = use(pass, relief ? BloodShader::link_relief : BloodShader::link);
         if (relief) {
@@ -134,7 +134,7 @@ void BloodGpu::find_seams(const Pass& pass) {
         jumps = seam_jumps(position, seam);
         gutters = seam_gutters(position, seam);
     }
-    seams_.emplace(make_seams(*gl_, links, size_, BloodBlocks::block_side));
+    seams_.emplace(make_seams(*gl_, links, size_));
     jumps_.emplace(*gl_, gutters, size_);
     blocks_.lie_on(position, links, jumps);
 }
@@ -231,44 +231,34 @@ void BloodGpu::move_drops(const Pass& pass, const BloodMedium& medium) {
     drops_now_ = 1 - drops_now_;
 }
 
-void BloodGpu::cross_seams(const Pass& pass, const BloodMedium& medium) const {
-    const gl::Program& program = use(pass, BloodShader::seam);
+void BloodGpu::step_cells(const Pass& pass, const BloodMedium& medium, BloodShader shader,
+                          BloodBlocks::Drawn drawn) const {
+    const gl::Program& program = use(pass, shader);
     bind(pass, program, "u_film", film());
-    bind(pass, program, "u_cells", seams_->cells.texture());
-    bind(pass, program, "u_pulls", seams_->pulls);
-    blocks_.bind_plan(pass, program);
-    program.set("u_flow", medium.flow);
-    program.set("u_size", glm::vec2(seams_->came.width(), seams_->came.height()));
-    draw_into(pass, seams_->came_target, {.program_point_size = true});
-    pass.draw_generated(GL_POINTS, seams_->chunks, 1);
+    bind(pass, program, "u_faces", ground_.faces());
+    program.set("u_one", 1.0F);
+    program.set("u_dries", !medium.tools.empty() || medium.flow.w > 0.0F);
+    if (drawn == BloodBlocks::Drawn::at_seams) {
+        bind(pass, program, "u_across", ground_.across());
+        bind(pass, program, "u_pulls", seams_->pulls);
+    }
+    set_medium(program, medium);
+    set_tools(pass, program, medium);
+    blocks_.cover(pass, program, drawn);
 }
 
 void BloodGpu::step_film(const Pass& pass, const BloodMedium& medium) const {
     const bool tools = !medium.tools.empty();
-    const bool seams = !seams_->empty();
-    if (seams) {
-        cross_seams(pass, medium);
-    }
-    const gl::Program& program =
-        use(pass, tools ? (seams ? BloodShader::film_tools_seams : BloodShader::film_tools)
-                        : (seams ? BloodShader::film_seams : BloodShader::film));
-    bind(pass, program, "u_film", film());
-    bind(pass, program, "u_faces", ground_.faces());
-    program.set("u_one", 1.0F);
-    program.set("u_dries", tools || medium.flow.w > 0.0F);
-    if (seams) {
-        bind(pass, program, "u_across", ground_.across());
-        bind(pass, program, "u_came", seams_->came);
-    }
-    set_medium(program, medium);
-    set_tools(pass, program, medium);
     film_target_[1 - film_now_].bind();
-    blocks_.cover(pass, program, BloodBlocks::Drawn::cells);
-    if (seams) {
+    using Drawn = BloodBlocks::Drawn;
+    step_cells(pass, medium, tools ? BloodShader::film_tools : BloodShader::film, Drawn::beside_none);
+    if (!seams_->empty) {
+        step_cells(pass, medium, tools ? BloodShader::film_tools_seams : BloodShader::film_seams,
+                   Drawn::at_seams);
         const gl::Program& gutters = use(pass, BloodShader::gutter);
         bind(pass, gutters, "u_film", film());
         bind(pass, gutters, "u_across", ground_.across());
-        blocks_.cover(pass, gutters, BloodBlocks::Drawn::gutters);
+        blocks_.cover(pass, gutters, Drawn::gutters);
     }
 }
 

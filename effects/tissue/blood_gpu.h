@@ -79,7 +79,8 @@ class BloodGpu {
                                                  BloodShader shader, const gl::Texture& source,
                                                  const gl::Texture& areas) const;
     void move_drops(const Pass& pass, const BloodMedium& medium);
-    void cross_seams(const Pass& pass, const BloodMedium& medium) const;
+    void step_cells(const Pass& pass, const BloodMedium& medium, BloodShader shader,
+                    BloodBlocks::Drawn drawn) const;
     void step_film(const Pass& pass, const BloodMedium& medium) const;
 
     const gl::Functions* gl_;

@@ -8,7 +8,7 @@
 namespace viscera::tissue {
 
 void BloodGround::take(const Pass& pass, const BloodBlocks& blocks, const gl::Texture& film,
-                       const gl::Texture& place_of_cell) {
+                       const gl::Texture& first_of_cell) {
     constexpr int in_row = 16;  // as blood_ground.frag
     constexpr int faces_of_block = 144;
     constexpr int texels = BloodBlocks::block_side * BloodBlocks::block_side;
@@ -28,7 +28,7 @@ void BloodGround::take(const Pass& pass, const BloodBlocks& blocks, const gl::Te
     const gl::Program& program = use(pass, BloodShader::ground);
     bind(pass, program, "u_list", blocks.list());
     bind(pass, program, "u_film", film);
-    bind(pass, program, "u_place_of_cell", place_of_cell);
+    bind(pass, program, "u_first_of_cell", first_of_cell);
     pass.bind(program, "u_metric", "metric");
     pass.bind(program, "u_right", "flow_right");
     draw_into(pass, *target_, gl::overwrite_state);

@@ -12,12 +12,12 @@ namespace viscera::tissue {
 /// are 8 short rows far apart in a picture, and side by side here.
 class BloodGround {
   public:
-    /// Of a surface that is new or has moved. `film` knows its cells, `place_of_cell` those at seams.
+    /// Of a surface that is new or has moved. `film` knows its cells, `first_of_cell` where the parts of those at seams begin.
     void take(const Pass& pass, const BloodBlocks& blocks, const gl::Texture& film,
-              const gl::Texture& place_of_cell);
+              const gl::Texture& first_of_cell);
     /// Of texels in u and v [mm].
     [[nodiscard]] const gl::Texture& lengths() const { return *lengths_; }
-    /// Of gutters the cell across their seam, of cells their place among those at seams, or -1.
+    /// Of gutters the cell across their seam, of cells at seams their first part, or -1.
     [[nodiscard]] const gl::Texture& across() const { return *across_; }
 
     /// What drives a film through the faces of cells: blood_faces.frag.

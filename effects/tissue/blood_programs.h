@@ -30,7 +30,6 @@ enum class BloodShader : std::size_t {
     film_tools,
     film_tools_seams,
     gutter,
-    seam,
     move,
     move_tools,
     deposited,

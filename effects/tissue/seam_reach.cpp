@@ -34,13 +34,6 @@ SeamReach pack(std::span<const std::array<int, 2>> numbers, const SquareGrid& gr
     return reach;
 }
 
-/// The square of a texel, x + size * y, `off` texels away, but on the texture.
-int square_at(const SquareGrid& grid, int texel, const glm::ivec2& off = glm::ivec2(0)) {
-    const glm::ivec2 at(texel % grid.size, texel / grid.size);
-    const glm::ivec2 square = glm::clamp(at + off, 0, grid.size - 1) / grid.side;
-    return square.y * grid.count() + square.x;
-}
-
 /// From -1 to 1 each, for i from 0 to 8.
 glm::ivec2 around(int i) {
     return {i % 3 - 1, i / 3 - 1};
@@ -48,13 +41,19 @@ glm::ivec2 around(int i) {
 
 }  // namespace
 
+int SquareGrid::square_of(int texel, const glm::ivec2& off) const {
+    const glm::ivec2 at(texel % size, texel / size);
+    const glm::ivec2 square = glm::clamp(at + off, 0, size - 1) / side;
+    return square.y * count() + square.x;
+}
+
 SeamReach reach_beside_seams(const SquareGrid& grid, std::span<const SeamLink> links,
                              std::span<const SeamJump> jumps) {
     std::vector<std::array<int, 2>> joined;  // square, the one across
     const auto join = [&](int a, int b) {
         // What flows one way must be seen from the other side as well.
-        joined.push_back({square_at(grid, a), square_at(grid, b)});
-        joined.push_back({square_at(grid, b), square_at(grid, a)});
+        joined.push_back({grid.square_of(a), grid.square_of(b)});
+        joined.push_back({grid.square_of(b), grid.square_of(a)});
     };
     for (const SeamLink& link : links) {
         join(static_cast<int>(link.from), static_cast<int>(link.to));
@@ -88,14 +87,14 @@ SeamReach reach_across_seams(const SquareGrid& grid, int past_seam, std::span<co
         }
     };
     const auto flow = [&](int from, int to, bool towards) {
-        const int here = square_at(grid, from);
-        const int there = square_at(grid, to);
+        const int here = grid.square_of(from);
+        const int there = grid.square_of(to);
         add(here, there, reach_from_where_it_lies);
         for (int i = 0; i < 9; ++i) {
             const glm::ivec2 way = past_seam * around(i);
-            add(here, square_at(grid, to, way), reach_from_where_it_runs_far);
+            add(here, grid.square_of(to, way), reach_from_where_it_runs_far);
             if (towards) {
-                add(square_at(grid, from, way), there, reach_from_where_it_runs_far);
+                add(grid.square_of(from, way), there, reach_from_where_it_runs_far);
             }
         }
     };
@@ -106,7 +105,7 @@ SeamReach reach_across_seams(const SquareGrid& grid, int past_seam, std::span<co
     // A drop leaves blood where the gutter below it leads, and the gutter shows what is there.
     for (const SeamJump& jump : jumps) {
         flow(jump.gutter, jump.to, false);
-        add(square_at(grid, jump.to), square_at(grid, jump.gutter), reach_of_gutters);
+        add(grid.square_of(jump.to), grid.square_of(jump.gutter), reach_of_gutters);
     }
     keep_once(found);
     const int count = grid.count();

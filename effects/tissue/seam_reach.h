@@ -22,6 +22,8 @@ struct SquareGrid {
     int side = 0;  ///< of a square [texels]
 
     [[nodiscard]] int count() const { return (size + side - 1) / side; }  ///< along each side
+    /// The square of a texel, both row by row, `off` texels away, but on the texture.
+    [[nodiscard]] int square_of(int texel, const glm::ivec2& off = glm::ivec2(0)) const;
 };
 
 /// Of each square those beside a square across a seam from it or from one beside it; numbers are x + (y <<

@@ -10,9 +10,10 @@ uniform float u_one;
 uniform bool u_dries;  // also where it stands
 #ifdef SEAMS
 #include "tissue/blood_gutter.glsl"
+#include "tissue/blood_part.glsl"
 #include "tissue/list.glsl"
-uniform sampler2D u_across;         // of blood_ground.frag
-uniform sampler2D u_came;           // of blood_seam.frag
+uniform sampler2D u_across;  // of blood_ground.frag
+uniform sampler2D u_pulls;   // of blood_link.frag
 #endif
 #ifdef TOOLS
 #include "tissue/blood_tools.glsl"
@@ -42,6 +43,26 @@ float through(vec4 face, float a, float b, float slope_a, float slope_b) {
 vec4 shut(vec4 face, bool at_edge, float steps, vec2 there) {
     return vec4(face.xyz, at_edge && steps < 0.5 && there.y > 1.0 ? 0.0 : face.w);
 }
+
+#ifdef SEAMS
+/// What comes across seams into a cell in a step [mm^3]. first: of its parts.
+float across_seams(int first, float height) {
+    float came = 0.0;
+    int part = first;
+    bool more = first >= 0;
+    while (more) {
+        vec4 pull = list_item(u_pulls, part);
+        ivec2 cell = cell_of_part(pull);
+        float there = texelFetch(u_film, cell, 0).x;
+        // From a block that rests nothing comes: it would not leave there.
+        bool flows = pull.z > 0.0 && steps_at(cell);
+        came -= flows ? exchange(pull.y - pull.x * (there - height), pull.x, pull.z, height, there) : 0.0;
+        more = pull.w > 0.0;
+        ++part;
+    }
+    return came;
+}
+#endif
 
 void main() {
     ivec2 here = ivec2(gl_FragCoord.xy);
@@ -97,8 +118,7 @@ void main() {
 #ifdef SEAMS
     // What comes across joins the height in the next step. A gutter shows what lies there.
     float across = texelFetch(u_across, on_ground(here), 0).r;
-    float came = list_item(u_came, film.w > 0.0 ? max(int(across), 0) : 0).r;
-    o_film.y += film.w > 0.0 && across >= 0.0 ? came : 0.0;
+    o_film.y += film.w > 0.0 ? across_seams(film.w > 0.0 ? int(across) : -1, c) / film.w : 0.0;
     float there = texelFetch(u_film, film.w < 0.0 ? cell_of_number(max(across, 0.0)) : here, 0).x;
     o_film = film.w < 0.0 ? vec4(there, 0.0, 0.0, film.w) : o_film;
 #endif
