@@ -71,6 +71,7 @@ void BloodBlocks::lie_on(const Image& position, std::span<const SeamLink> links,
     block_pairs_.upload(*gl_, blocks.items, "blocks that seams join");
     first_pair_.upload(std::as_bytes(std::span(blocks.first)));
     const auto count = static_cast<std::size_t>(blocks_);
+    const bool joined = !links.empty();  // else gutters lead nowhere
     std::vector<unsigned char> surface(count * count, 0);
     std::vector<unsigned char> cells(count * count, 0);
     std::vector<unsigned char> seams(count * count, 0);
@@ -80,7 +81,7 @@ void BloodBlocks::lie_on(const Image& position, std::span<const SeamLink> links,
             const float coverage = position.at(x, y, 3);
             surface[block] = coverage > 0.0F ? 255 : surface[block];
             cells[block] = coverage > 0.75F ? 1 : cells[block];
-            seams[block] = coverage > 0.0F && coverage < 0.75F ? 1 : seams[block];
+            seams[block] = joined && coverage > 0.0F && coverage < 0.75F ? 1 : seams[block];
         }
     }
     surface_.upload(std::as_bytes(std::span(surface)));
@@ -91,18 +92,17 @@ void BloodBlocks::lie_on(const Image& position, std::span<const SeamLink> links,
         }
     }
     std::vector<glm::vec4> list;
-    const auto add = [&](bool with_cells, bool at_seams) {
+    const auto add = [&](auto&& wanted) {
         for (std::size_t i = 0; i < surface.size(); ++i) {
-            if (surface[i] != 0 && (cells[i] != 0) == with_cells && (seams[i] != 0) == at_seams) {
+            if (surface[i] != 0 && wanted(i)) {
                 list.emplace_back(i % count, i / count, 0.0F, 0.0F);
             }
         }
         return static_cast<int>(list.size());
     };
-    without_seams_ = add(true, false);
-    with_cells_ = add(true, true);
-    add(false, true);
-    listed_ = static_cast<int>(list.size());
+    without_seams_ = add([&](std::size_t i) { return cells[i] != 0 && seams[i] == 0; });
+    with_cells_ = add([&](std::size_t i) { return cells[i] != 0 && seams[i] != 0; });
+    listed_ = add([&](std::size_t i) { return cells[i] == 0; });
     list_.upload(*gl_, list, "blocks with a surface");
 }
 

@@ -43,8 +43,8 @@ class BloodBlocks {
     enum class Drawn {
         beside_none,  ///< to be stepped, with cells, none of them at a seam
         at_seams,     ///< to be stepped, the others with cells
-        gutters,  ///< of which nothing but gutters changes
-        settled,  ///< stepped until the last look
+        gutters,      ///< of which nothing but gutters changes
+        settled,      ///< stepped until the last look
     };
 
     /// `size`: texels along each side of the film.

@@ -112,6 +112,7 @@ void BloodGpu::take_surface(const Pass& pass, const BloodMedium& medium, bool em
             bind_relief(pass, links, static_cast<double>(medium.relief_pull));
         }
         bind(pass, links, "u_links", seams_->links.texture());
+        bind(pass, links, "u_parts", seams_->parts.texture());
         pass.bind(links, "u_position", "position");
         pass.bind(links, "u_normal", "normal");
         pass.bind(links, "u_metric", "metric");

@@ -12,7 +12,8 @@ namespace viscera::tissue {
 /// are 8 short rows far apart in a picture, and side by side here.
 class BloodGround {
   public:
-    /// Of a surface that is new or has moved. `film` knows its cells, `first_of_cell` where the parts of those at seams begin.
+    /// Of a surface that is new or has moved. `film` knows its cells, `first_of_cell` where the parts of
+    /// those at seams begin.
     void take(const Pass& pass, const BloodBlocks& blocks, const gl::Texture& film,
               const gl::Texture& first_of_cell);
     /// Of texels in u and v [mm].

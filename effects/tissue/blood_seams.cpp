@@ -9,20 +9,26 @@ namespace viscera::tissue {
 
 BloodSeams make_seams(const gl::Functions& gl, std::span<const SeamLink> links, int size) {
     const auto width = static_cast<std::size_t>(size);
-    std::vector<float> first_of_cell(width * width);
-    const std::vector<SeamLink> parts = links_by_cell(links, first_of_cell);
+    const SeamParts seams = seam_parts(links, width * width);
     std::vector<glm::vec4> items;
-    std::ranges::transform(parts, std::back_inserter(items), [](const SeamLink& link) {
+    std::ranges::transform(seams.links, std::back_inserter(items), [](const SeamLink& link) {
         return glm::vec4(link.from, link.to, link.side, link.share);
     });
+    ListTexture link_list;
+    link_list.upload(gl, items, "links across seams");
+    items.clear();
+    std::ranges::transform(seams.parts, std::back_inserter(items), [](const SeamPart& part) {
+        return glm::vec4(part.first, part.count, part.to, part.ends);
+    });
+    ListTexture part_list;
+    part_list.upload(gl, items, "parts of seams");
     gl::Texture first = gl::Texture::make_2d(gl, size, size, PixelFormat::r32f, "parts of cells at seams");
-    first.upload(std::as_bytes(std::span(first_of_cell)));
-    ListTexture list;
-    list.upload(gl, items, "parts of seams");
-    gl::Texture pulls = gl::Texture::make_2d(gl, list.texture().width(), list.rows(), PixelFormat::rgba32f,
-                                             "fall across seams");
+    first.upload(std::as_bytes(std::span(seams.first)));
+    gl::Texture pulls = gl::Texture::make_2d(gl, part_list.texture().width(), part_list.rows(),
+                                             PixelFormat::rgba32f, "fall across seams");
     gl::Framebuffer target(gl, pulls, "fall across seams");
-    return {std::move(first), std::move(list), std::move(pulls), std::move(target), links.empty()};
+    return {std::move(first), std::move(link_list), std::move(part_list),
+            std::move(pulls), std::move(target),    links.empty()};
 }
 
 }  // namespace viscera::tissue

@@ -11,9 +11,10 @@ namespace viscera::tissue {
 
 /// The seams of a surface as the shaders of the film read them.
 struct BloodSeams {
-    gl::Texture first_of_cell;  ///< of a texel: where the parts of its cell begin in `links`, or -1
-    ListTexture links;          ///< of links_by_cell()
-    gl::Texture pulls;          ///< what drives a film through each link: of blood_link.frag
+    gl::Texture first_of_cell;  ///< of a texel: where the parts of its cell begin, or -1
+    ListTexture links;
+    ListTexture parts;
+    gl::Texture pulls;  ///< what drives a film through each part: of blood_link.frag
     gl::Framebuffer pulls_target;
     bool empty = true;
 };

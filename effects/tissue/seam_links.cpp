@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace viscera::tissue {
 namespace {
@@ -117,26 +118,33 @@ std::vector<int> seam_gutters(const Image& position, const Image& seam) {
     return Joiner(position, seam).gutters();
 }
 
-std::vector<SeamLink> links_by_cell(std::span<const SeamLink> links, std::span<float> first) {
-    std::vector<SeamLink> ordered;
-    ordered.reserve(2 * links.size());
+SeamParts seam_parts(std::span<const SeamLink> links, std::size_t cells) {
+    SeamParts seams{{}, {}, std::vector<float>(cells, -1.0F)};
+    seams.links.reserve(2 * links.size());
     for (SeamLink link : links) {
-        ordered.push_back(link);
+        seams.links.push_back(link);
         link.share = -link.share;
-        ordered.push_back(link);
+        seams.links.push_back(link);
     }
     const auto cell = [](const SeamLink& link) { return link.share > 0.0F ? link.from : link.to; };
-    // Stable: sums of parts must not hang on how a library sorts.
-    std::ranges::stable_sort(ordered, {}, cell);
-    std::ranges::fill(first, -1.0F);
-    for (std::size_t i = 0; i < ordered.size(); ++i) {
-        float& begin = first[static_cast<std::size_t>(cell(ordered[i]))];
-        begin = begin < 0.0F ? static_cast<float>(i) : begin;
-        if (i + 1 == ordered.size() || cell(ordered[i + 1]) != cell(ordered[i])) {
-            ordered[i].side += 4.0F;
+    const auto across = [](const SeamLink& link) { return link.share > 0.0F ? link.to : link.from; };
+    // Stable: sums must not hang on how a library sorts.
+    std::ranges::stable_sort(seams.links, {},
+                             [&](const SeamLink& link) { return std::pair(cell(link), across(link)); });
+    for (std::size_t i = 0; i < seams.links.size(); ++i) {
+        const SeamLink& link = seams.links[i];
+        const bool cell_begins = i == 0 || cell(seams.links[i - 1]) != cell(link);
+        if (cell_begins || across(seams.links[i - 1]) != across(link)) {
+            if (cell_begins) {
+                seams.first[static_cast<std::size_t>(cell(link))] = static_cast<float>(seams.parts.size());
+            }
+            seams.parts.push_back({static_cast<float>(i), 0.0F, across(link), 0.0F});
         }
+        seams.parts.back().count += 1.0F;
+        seams.parts.back().ends =
+            i + 1 == seams.links.size() || cell(seams.links[i + 1]) != cell(link) ? 1.0F : 0.0F;
     }
-    return ordered;
+    return seams;
 }
 
 }  // namespace viscera::tissue

@@ -118,7 +118,8 @@ void main() {
 #ifdef SEAMS
     // What comes across joins the height in the next step. A gutter shows what lies there.
     float across = texelFetch(u_across, on_ground(here), 0).r;
-    o_film.y += film.w > 0.0 ? across_seams(film.w > 0.0 ? int(across) : -1, c) / film.w : 0.0;
+    float came = across_seams(film.w > 0.0 ? int(across) : -1, c);
+    o_film.y += film.w > 0.0 ? came / film.w : 0.0;
     float there = texelFetch(u_film, film.w < 0.0 ? cell_of_number(max(across, 0.0)) : here, 0).x;
     o_film = film.w < 0.0 ? vec4(there, 0.0, 0.0, film.w) : o_film;
 #endif

@@ -1,8 +1,10 @@
 #version 330 core
 #include "tissue/blood_part.glsl"
-// What drives a film through the parts of seams. A part joins a cell to one across the seam as if they were neighbours; its share of
-// their common face is at most one half, since the other side has parts of its own there.
-uniform sampler2D u_links;  // cell, cell across, side (0 right, 1 left, 2 top, 3 bottom; 4 more: its last one), share (negative: as seen from across)
+#include "tissue/list.glsl"
+// What drives a film through the parts of seams: all links between a cell and one across. A link joins them as if they were neighbours; its
+// share of their common face is at most one half, since the other side has links of its own there.
+uniform sampler2D u_parts;  // first link, how many, cell across, whether it is its cell's last one
+uniform sampler2D u_links;  // cell, cell across, side (0 right, 1 left, 2 top, 3 bottom), share (negative: as seen from across)
 uniform sampler2D u_position;
 uniform sampler2D u_normal;
 uniform sampler2D u_metric;
@@ -13,7 +15,7 @@ uniform float u_strength;
 uniform float u_spreading;
 #include "tissue/downhill.glsl"
 #include "tissue/relief.glsl"
-layout(location = 0) out vec4 o_link;  // see blood_part.glsl
+layout(location = 0) out vec4 o_part;  // see blood_part.glsl
 
 ivec2 last;
 
@@ -35,19 +37,18 @@ vec4 step_along(ivec2 at, ivec2 axis) {
     return vec4(way, relief_rise(low, high, way)) * (before && after ? 0.5 : 1.0);
 }
 
-void main() {
-    vec4 link = texelFetch(u_links, ivec2(gl_FragCoord.xy), 0);
-    o_link = vec4(0.0);
-    if (link.w == 0.0) {
-        return;
-    }
-    float part = abs(link.w);
-    bool from_across = link.w < 0.0;
-    last = textureSize(u_position, 0) - 1;
+ivec2 cell_at(float number) {
     int width = last.x + 1;
-    ivec2 from = ivec2(int(link.x) % width, int(link.x) / width);
-    ivec2 to = ivec2(int(link.y) % width, int(link.y) / width);
-    int side = int(link.z) & 3;
+    return ivec2(int(number) % width, int(number) / width);
+}
+
+/// Spread, drive [mm], area [mm^2].
+vec3 pull_of(vec4 link) {
+    float share_of_face = abs(link.w);
+    bool from_across = link.w < 0.0;
+    ivec2 from = cell_at(link.x);
+    ivec2 to = cell_at(link.y);
+    int side = int(link.z);
     ivec2 axis = side < 2 ? ivec2(1 - 2 * side, 0) : ivec2(0, 5 - 2 * side);
     ivec2 along = abs(axis.yx);
     vec4 metric = texelFetch(u_metric, from, 0);
@@ -73,6 +74,18 @@ void main() {
     float sum = flow.x + flow.y;
     float share = sum > 0.0 ? 0.4 + 2.4 * (side < 2 ? flow.x : flow.y) / sum : 1.0;
     // Seen from the other side everything is the same but the sign.
-    o_link = vec4(part * u_strength * vec2(conductance * n, from_across ? -drive : drive), area > 0.0 ? part * share * area : 0.0,
-                  number_of_part(from_across ? from : to, link.z > 3.5));
+    return share_of_face * vec3(u_strength * conductance * n, u_strength * (from_across ? -drive : drive), area > 0.0 ? share * area : 0.0);
+}
+
+void main() {
+    vec4 part = texelFetch(u_parts, ivec2(gl_FragCoord.xy), 0);
+    last = textureSize(u_position, 0) - 1;
+    vec3 sum = vec3(0.0);
+    int link = int(part.x);
+    int end = link + int(part.y);
+    while (link < end) {
+        sum += pull_of(list_item(u_links, link));
+        ++link;
+    }
+    o_part = vec4(sum, number_of_part(cell_at(part.z), part.w > 0.5));
 }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 namespace viscera::reference {
 namespace {
@@ -191,6 +193,25 @@ double exchange(double drive, double spread, double area, double a, double b, co
     return std::copysign(std::min(volume, std::abs(drive) * area / (8.0 * std::max(spread, 1e-6))), drive);
 }
 
+/// One link between each two cells: what faces of either side add to it.
+std::vector<FlowLink> summed_by_pair(const std::vector<FlowLink>& links) {
+    std::map<std::pair<std::size_t, std::size_t>, FlowLink> sums;
+    for (const FlowLink& link : links) {
+        const auto [low, high] = std::minmax(link.from, link.to);
+        FlowLink& sum = sums[{low, high}];
+        sum.from = low;
+        sum.to = high;
+        sum.spread += link.spread;
+        sum.drive += link.from == low ? link.drive : -link.drive;
+        sum.area_mm2 += link.area_mm2;
+    }
+    std::vector<FlowLink> all;
+    for (const auto& [cells, sum] : sums) {
+        all.push_back(sum);
+    }
+    return all;
+}
+
 }  // namespace
 
 Flow flow_of(const TissueSurface& surface, const glm::dvec3& gravity, double spreading, bool open_edges) {
@@ -208,6 +229,7 @@ Flow flow_of(const TissueSurface& surface, const glm::dvec3& gravity, double spr
             builder.link(x, y, 0, -1, flow.links);
         }
     }
+    flow.links = summed_by_pair(flow.links);
     return flow;
 }
 
