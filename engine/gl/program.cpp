@@ -229,7 +229,7 @@ void Program::reflect() {
 
 void Program::assign_units() {
     const Functions& gl = handle_.gl();
-    use();
+    gl.UseProgram(id());
     GLuint next = 0;
     for (Uniform& uniform : uniforms_) {
         if (!is_sampler(uniform.type)) {
@@ -249,6 +249,18 @@ void Program::assign_units() {
     }
 }
 
+void Program::use() const {
+    handle_.gl().UseProgram(id());
+    for (const Uniform& uniform : uniforms_) {
+        uniform.waits = uniform.type != GL_IMAGE_2D;  // those have their unit from the shader
+    }
+}
+
+std::string_view Program::unset() const {
+    const auto found = std::ranges::find_if(uniforms_, &Uniform::waits);
+    return found != uniforms_.end() ? std::string_view(found->name) : std::string_view();
+}
+
 const Program::Uniform* Program::find(std::string_view name) const {
     const auto found = std::ranges::lower_bound(
         uniforms_, name, {}, [](const Uniform& uniform) { return std::string_view(uniform.name); });
@@ -258,7 +270,11 @@ const Program::Uniform* Program::find(std::string_view name) const {
 template <class T>
 void Program::set_array(std::string_view name, std::span<const T> values) const {
     const Uniform* uniform = find(name);
-    if (uniform == nullptr || values.empty()) {
+    if (uniform == nullptr) {
+        return;
+    }
+    uniform->waits = false;
+    if (values.empty()) {
         return;
     }
     if (!takes(uniform->type, values.data())) {
@@ -311,6 +327,7 @@ void Program::bind(std::string_view name, const Texture& texture, const Sampler&
     if (!is_sampler(uniform->type)) {
         throw Error(ErrorCode::gl, label_, "uniform '" + std::string(name) + "' is no sampler");
     }
+    uniform->waits = false;
     texture.bind(uniform->unit);
     sampler.bind(uniform->unit);
 }

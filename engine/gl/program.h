@@ -37,7 +37,8 @@ class Program {
     /// What the driver remarked although it compiled; often empty.
     [[nodiscard]] const std::string& warnings() const { return warnings_; }
 
-    void use() const { handle_.gl().UseProgram(id()); }
+    /// From here on every uniform waits to be set.
+    void use() const;
 
     struct Uniform {
         std::string name;  ///< arrays without "[0]"
@@ -45,7 +46,10 @@ class Program {
         GLenum type = GL_FLOAT;
         GLint size = 1;   ///< elements of an array
         GLuint unit = 0;  ///< samplers only
+        mutable bool waits = false;
     };
+    /// The first active uniform that still waits, or empty: it holds 0, or what another pass has left there.
+    [[nodiscard]] std::string_view unset() const;
     /// Active uniforms outside blocks, sorted by name.
     [[nodiscard]] std::span<const Uniform> uniforms() const { return uniforms_; }
 

@@ -178,7 +178,7 @@ bool Executor::draw(std::size_t p) {
         state.timer->end();
     }
     observe(pass.name, false);
-    check(pass.name);
+    check(pass.name, state.programs);
     return view.dispatched();
 }
 
@@ -188,7 +188,7 @@ void Executor::observe(std::string_view pass, bool begins) const {
     }
 }
 
-void Executor::check(std::string_view pass) const {
+void Executor::check(std::string_view pass, std::span<ShaderLibrary::Entry* const> programs) const {
     if (!options_.check_errors) {
         return;
     }
@@ -196,6 +196,13 @@ void Executor::check(std::string_view pass) const {
     if (error != GL_NO_ERROR) {
         throw Error(ErrorCode::gl, "pass '" + std::string(pass) + "'",
                     std::string("OpenGL reports: ") + gl::error_name(error));
+    }
+    for (const ShaderLibrary::Entry* entry : programs) {
+        if (entry->program && !entry->program->unset().empty()) {
+            throw Error(ErrorCode::gl, "pass '" + std::string(pass) + "'",
+                        entry->program->label() + " is used without a value for '" +
+                            std::string(entry->program->unset()) + "'");
+        }
     }
 }
 

@@ -88,7 +88,7 @@ class Executor {
     void turn_over();
     void forget_frame();
     void import(const Frame& frame);
-    void check(std::string_view pass) const;
+    void check(std::string_view pass, std::span<ShaderLibrary::Entry* const> programs) const;
     void observe(std::string_view pass, bool begins) const;
     [[nodiscard]] const gl::Texture& texture_of(std::size_t content) const;
     /// What has been cleared before a pass draws, and what still has to be afterwards.

@@ -43,8 +43,8 @@ struct RendererOptions {
     ShaderReader shaders;
     /// GPU timer queries around each pass. Never on software renderers.
     bool timers = true;
-    /// Ask for glGetError after each pass and throw what it says. KHR_debug messages go to the log in any
-    /// case.
+    /// Ask for glGetError after each pass and throw what it says, and where a program is used without a value
+    /// for each of its uniforms. KHR_debug messages go to the log in any case.
     bool check_errors = true;
     /// Called around each pass that draws, its clears included: for measuring.
     PassObserver observer;

@@ -80,6 +80,25 @@ TEST_P(ProgramTest, UnknownNamesAreIgnored) {
     EXPECT_EQ(pixel(program).x, 2.0F);
 }
 
+TEST_P(ProgramTest, SaysWhichUniformHasNoValue) {
+    const gl::Program program = make(
+        "uniform float first; uniform vec2 second[2]; uniform sampler2D third;\n"
+        "void main() { colour = texture(third, second[1]) + first; }");
+    EXPECT_EQ(program.unset(), "") << "it has not been used";
+    const gl::Texture texture = gl::Texture::make_2d(gl(), 1, 1, PixelFormat::r32f, "one texel");
+    const gl::Sampler sampler(gl(), gl::SamplerDesc{});
+    for (int time = 0; time < 2; ++time) {
+        program.use();
+        EXPECT_EQ(program.unset(), "first");
+        program.set("first", 1.0F);
+        EXPECT_EQ(program.unset(), "second");
+        program.set("second", std::span<const glm::vec2>());
+        EXPECT_EQ(program.unset(), "third") << "no values are values";
+        program.bind("third", texture, sampler);
+        EXPECT_EQ(program.unset(), "");
+    }
+}
+
 TEST_P(ProgramTest, AWrongTypeIsNamed) {
     const gl::Program program = make("uniform float radius_mm; void main() { colour = vec4(radius_mm); }");
     program.use();

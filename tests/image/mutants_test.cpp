@@ -256,7 +256,7 @@ constexpr Mutant mutants[] = {
     {"FilmPinned", "tissue_blood", "tissue/blood_common.glsl", "u_pinning - 4.0", "0.9 * u_pinning - 4.0",
      "blood"},
     {"FilmCube", "tissue_blood", "tissue/blood_common.glsl", ": pull * moving * moving * moving",
-     ": 0.98 * pull * moving * moving * moving", "blood"},
+     ": 0.95 * pull * moving * moving * moving", "blood"},
     {"FilmTangent", "tissue_blood", "tissue/blood_common.glsl", "(2.0 / 3.0) * sqrt", "(1.8 / 3.0) * sqrt",
      "blood"},
     {"FilmOwed", "tissue_blood", "tissue/blood_film.frag", "/ film.w + film.y;", "/ film.w;", "blood"},

@@ -20,6 +20,14 @@ class Failure : public RuntimeTest {
                              }
                              draw_fill(pass, value);
                          }});
+        add("forgets", {.ports = {write_port()}, .draw = [this](const Pass& pass, double value) {
+                            if (!fails_) {
+                                draw_fill(pass, value);
+                                return;
+                            }
+                            (void)pass.use(RecipeProgram::fill);
+                            pass.draw_fullscreen();
+                        }});
         add("throws", {.ports = {write_port(), read_port()},
                        .prepare =
                            [this](Prepare&, double) {
@@ -50,6 +58,21 @@ TEST_P(Failure, AnOpenGlErrorNamesItsPassAndTheRendererGoesOn) {
     EXPECT_EQ(error->code(), ErrorCode::gl);
     EXPECT_THAT(error->what(), HasSubstr("pass 'p1'"));
     EXPECT_THAT(error->what(), HasSubstr("invalid enum"));
+    fails_ = false;
+    render(1);
+    EXPECT_EQ(value_of("x"), 4.0F);
+}
+
+TEST_P(Failure, AUniformThatIsNotSetNamesItsPassAndProgram) {
+    // Another pass of the same program has set it: this one would draw with a value that is not its own.
+    renderer().set_scene(make_scene({{"kept", 1.0}, {"forgets", 4.0}}, {"x"}));
+    fails_ = true;
+    const auto error = error_of([&] { render(0); });
+    ASSERT_TRUE(error);
+    EXPECT_EQ(error->code(), ErrorCode::gl);
+    EXPECT_THAT(error->what(), HasSubstr("pass 'p1'"));
+    EXPECT_THAT(error->what(), HasSubstr("test/fill.frag"));
+    EXPECT_THAT(error->what(), HasSubstr("'u_value'"));
     fails_ = false;
     render(1);
     EXPECT_EQ(value_of("x"), 4.0F);
