@@ -28,10 +28,12 @@ void main() {
     int i = int(pairs.x);
     int end = awake && near.r < 0.5 ? i + int(pairs.y) : i;
     float plan = near.r;
-    while (i < end) {
+    // See across_seams() in blood_film.frag.
+    do {
         ivec4 four = ivec4(list_item(u_pairs, i));
-        plan = max(plan, max(max(plan_of(four.x), plan_of(four.y)), max(plan_of(four.z), plan_of(four.w))));
-        i = plan > 0.5 ? end : i + 1;
-    }
+        float found = max(max(plan_of(four.x), plan_of(four.y)), max(plan_of(four.z), plan_of(four.w)));
+        plan = i < end ? max(plan, found) : plan;
+        ++i;
+    } while (i < end && plan < 0.5);
     o_plan = vec2(plan, near.g);
 }

@@ -45,21 +45,22 @@ vec4 shut(vec4 face, bool at_edge, float steps, vec2 there) {
 }
 
 #ifdef SEAMS
-/// What comes across seams into a cell in a step [mm^3]. first: of its parts.
+/// What comes across seams into a cell in a step [mm^3]. first: of its parts, -1 without any.
 float across_seams(int first, float height) {
     float came = 0.0;
-    int part = first;
-    bool more = first >= 0;
-    while (more) {
+    int part = max(first, 0);
+    bool more;
+    // A loop that asks before its first turn runs its body once more on llvmpipe.
+    do {
         vec4 pull = list_item(u_pulls, part);
         ivec2 cell = cell_of_part(pull);
         float there = texelFetch(u_film, cell, 0).x;
         // From a block that rests nothing comes: it would not leave there.
-        bool flows = pull.z > 0.0 && steps_at(cell);
+        bool flows = first >= 0 && pull.z > 0.0 && steps_at(cell);
         came -= flows ? exchange(pull.y - pull.x * (there - height), pull.x, pull.z, height, there) : 0.0;
-        more = pull.w > 0.0;
+        more = first >= 0 && pull.w > 0.0;
         ++part;
-    }
+    } while (more);
     return came;
 }
 #endif
