@@ -52,7 +52,7 @@ class BloodBlocks {
 
     /// The surface is another.
     void lie_on(const Image& position, std::span<const SeamLink> links, std::span<const SeamJump> jumps);
-    /// Blocks with a surface: x, y each; those with cells first, and of these those without gutters.
+    /// Blocks with a surface: x, y each; those with cells first, and of these those beside no seam.
     [[nodiscard]] const gl::Texture& list() const { return list_.texture(); }
     [[nodiscard]] int count() const { return listed_; }
     /// Nothing is known yet; `everywhere`: blood may be anywhere.

@@ -35,6 +35,11 @@ constexpr std::array<GLenum, 9> sampler_types{GL_SAMPLER_2D,
                                               GL_UNSIGNED_INT_SAMPLER_3D,
                                               GL_UNSIGNED_INT_SAMPLER_2D_ARRAY};
 
+/// Which have their unit from the shader.
+bool is_image(GLenum type) {
+    return type >= GL_IMAGE_1D && type <= GL_UNSIGNED_INT_IMAGE_2D_MULTISAMPLE_ARRAY;
+}
+
 bool is_sampler(GLenum type) {
     return std::ranges::find(sampler_types, type) != sampler_types.end();
 }
@@ -252,7 +257,7 @@ void Program::assign_units() {
 void Program::use() const {
     handle_.gl().UseProgram(id());
     for (const Uniform& uniform : uniforms_) {
-        uniform.waits = uniform.type != GL_IMAGE_2D;  // those have their unit from the shader
+        uniform.waits = !is_image(uniform.type);
     }
 }
 
