@@ -50,7 +50,8 @@ float across_seams(int first, float height) {
     float came = 0.0;
     int part = max(first, 0);
     bool more;
-    // A loop that asks before its first turn runs its body once more on llvmpipe.
+    // A loop that asks before its first turn runs its body once more on llvmpipe. What is used after one that asks behind it must be
+    // carried from turn to turn, as the sum is: lanes that have left are computed on.
     do {
         vec4 pull = list_item(u_pulls, part);
         ivec2 cell = cell_of_part(pull);
