@@ -255,16 +255,27 @@ void BloodBlocks::draw(const Pass& pass, const gl::Program& program, int first, 
     pass.draw_generated(GL_POINTS, last - first, 1);
 }
 
+std::pair<int, int> BloodBlocks::range_of(Drawn drawn) const {
+    switch (drawn) {
+        case Drawn::beside_no_seam:
+            return {0, without_seams_};
+        case Drawn::at_seams:
+            return {without_seams_, with_cells_};
+        case Drawn::gutters:
+            return {without_seams_, listed_};
+        case Drawn::settled:
+            break;
+    }
+    return {0, listed_};
+}
+
 void BloodBlocks::cover(const Pass& pass, const gl::Program& program, Drawn drawn) const {
     if (drawn == Drawn::settled) {
         bind(pass, program, "u_plan_before", plan_[1 - now_]);
     }
     program.set("u_with_cells", with_cells_);
-    const bool from_seams = drawn == Drawn::at_seams || drawn == Drawn::gutters;
-    draw(pass, program, from_seams ? without_seams_ : 0,
-         drawn == Drawn::beside_none ? without_seams_
-         : drawn == Drawn::at_seams  ? with_cells_
-                                     : listed_);
+    const auto [first, last] = range_of(drawn);
+    draw(pass, program, first, last);
 }
 
 void BloodBlocks::cover_changed(const Pass& pass, const gl::Program& program, bool whole) const {

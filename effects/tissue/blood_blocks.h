@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <glm/glm.hpp>
@@ -41,10 +42,10 @@ class BloodBlocks {
         const DropGroups& groups;
     };
     enum class Drawn {
-        beside_none,  ///< to be stepped, with cells, none of them at a seam
-        at_seams,     ///< to be stepped, the others with cells
-        gutters,      ///< of which nothing but gutters changes
-        settled,      ///< stepped until the last look
+        beside_no_seam,  ///< to be stepped, with cells, none of them at a seam
+        at_seams,        ///< to be stepped, the others with cells
+        gutters,         ///< of which nothing but gutters changes
+        settled,         ///< stepped until the last look
     };
 
     /// `size`: texels along each side of the film.
@@ -89,6 +90,8 @@ class BloodBlocks {
                                                 BloodShader shader, const gl::Texture& drops) const;
     void mark_alive(const Pass& pass, const BloodMedium& medium, const Blood& blood) const;
     void reach(const Pass& pass) const;
+    /// Of list(): the first, and one past the last.
+    [[nodiscard]] std::pair<int, int> range_of(Drawn drawn) const;
     void draw(const Pass& pass, const gl::Program& program, int first, int last) const;
 
     const gl::Functions* gl_;

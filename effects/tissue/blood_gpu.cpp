@@ -252,7 +252,7 @@ void BloodGpu::step_film(const Pass& pass, const BloodMedium& medium) const {
     const bool tools = !medium.tools.empty();
     film_target_[1 - film_now_].bind();
     using Drawn = BloodBlocks::Drawn;
-    step_cells(pass, medium, tools ? BloodShader::film_tools : BloodShader::film, Drawn::beside_none);
+    step_cells(pass, medium, tools ? BloodShader::film_tools : BloodShader::film, Drawn::beside_no_seam);
     if (!seams_->empty) {
         step_cells(pass, medium, tools ? BloodShader::film_tools_seams : BloodShader::film_seams,
                    Drawn::at_seams);
