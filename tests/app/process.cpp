@@ -6,6 +6,7 @@
 
 #include <csignal>
 #include <cstdlib>
+#include <filesystem>
 
 #include <fcntl.h>
 
@@ -14,7 +15,11 @@
 namespace viscera::test {
 namespace {
 
-void apply(const Call& call) {
+void apply(const Call& call, const std::string& folder) {
+    // What a program writes where it stands must not stay in the checkout.
+    if (chdir(folder.c_str()) != 0) {
+        _exit(126);
+    }
     unsetenv("DISPLAY");
     unsetenv("WAYLAND_DISPLAY");
     unsetenv("XDG_CACHE_HOME");  // no test reads what another one kept
@@ -36,6 +41,8 @@ Ended run(const std::vector<std::string>& arguments, const Call& call) {
     const TempFolder folder;
     const std::string out = (folder / "out").string();
     const std::string err = (folder / "err").string();
+    const std::string here = (folder / "here").string();
+    std::filesystem::create_directory(here);
     std::vector<char*> words;
     for (const std::string& argument : arguments) {
         words.push_back(const_cast<char*>(argument.c_str()));
@@ -46,7 +53,7 @@ Ended run(const std::vector<std::string>& arguments, const Call& call) {
         constexpr int mode = O_WRONLY | O_CREAT | O_TRUNC;
         dup2(open(out.c_str(), mode, 0600), STDOUT_FILENO);
         dup2(open(err.c_str(), mode, 0600), STDERR_FILENO);
-        apply(call);
+        apply(call, here);
         execvp(words[0], words.data());
         _exit(127);
     }

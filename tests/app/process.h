@@ -20,10 +20,10 @@ struct Ended {
     std::string err;  ///< stderr
 };
 
-/// Runs `viscera` to its end. Without more said it sees no display, no home and no cache.
+/// Runs `viscera` to its end, in an empty folder. Without more said it sees no display, no home and no cache.
 [[nodiscard]] Ended viscera(const std::vector<std::string>& arguments, const Call& call = {});
 
-/// Runs any program of the PATH.
+/// Runs any program of the PATH, in an empty folder.
 [[nodiscard]] Ended run(const std::vector<std::string>& arguments, const Call& call = {});
 
 }  // namespace viscera::test
