@@ -252,6 +252,7 @@ void BloodBlocks::draw(const Pass& pass, const gl::Program& program, int first, 
     bind_plan(pass, program);
     bind(pass, program, "u_list", list_.texture());
     program.set("u_first", first);
+    program.set("u_ground_rows", static_cast<float>(rows()));
     pass.draw_generated(GL_POINTS, last - first, 1);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -33,6 +34,7 @@ namespace viscera::tissue {
 class BloodBlocks {
   public:
     static constexpr int block_side = 8;  ///< [texels]; as blood_plan.glsl
+    static constexpr int in_row = 16;     ///< blocks in each of rows(); as blood_ground.glsl
 
     /// Film and drops as they are now.
     struct Blood {
@@ -55,7 +57,8 @@ class BloodBlocks {
     void lie_on(const Image& position, std::span<const SeamLink> links, std::span<const SeamJump> jumps);
     /// Blocks with a surface: x, y each; those with cells first, and of these those beside no seam.
     [[nodiscard]] const gl::Texture& list() const { return list_.texture(); }
-    [[nodiscard]] int count() const { return listed_; }
+    /// That textures have which lay down by blocks what belongs to them, in the order of the list.
+    [[nodiscard]] int rows() const { return std::max((listed_ + in_row - 1) / in_row, 1); }
     /// Nothing is known yet; `everywhere`: blood may be anywhere.
     void begin(const Pass& pass, bool everywhere);
     /// Where drops may appear before the next look: UV, and the volume of a drop as large as the place.

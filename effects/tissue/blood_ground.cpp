@@ -9,10 +9,10 @@ namespace viscera::tissue {
 
 void BloodGround::take(const Pass& pass, const BloodBlocks& blocks, const gl::Texture& film,
                        const gl::Texture& first_of_cell) {
-    constexpr int in_row = 16;  // as blood_ground.frag
-    constexpr int faces_of_block = 144;
+    constexpr int in_row = BloodBlocks::in_row;
+    constexpr int faces_of_block = 160;  // as blood_ground.glsl
     constexpr int texels = BloodBlocks::block_side * BloodBlocks::block_side;
-    const int rows = std::max((blocks.count() + in_row - 1) / in_row, 1);
+    const int rows = blocks.rows();
     if (!lengths_ || lengths_->height() != rows) {
         target_.reset();
         faces_target_.reset();

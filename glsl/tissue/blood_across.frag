@@ -1,4 +1,5 @@
 #version 330 core
+#include "common/texel.glsl"
 #include "tissue/blood_held.glsl"
 #include "tissue/blood_plan.glsl"
 #include "tissue/list.glsl"
@@ -14,7 +15,7 @@ const int kind_gutters = 4;  // gutters show all that is stepped there
 
 /// What a pair makes of the plan.
 float plan_of(int pair) {
-    float near = texelFetch(u_near, ivec2((pair >> 3) & 511, pair >> 12), 0).r;
+    float near = texel_at(u_near, ivec2((pair >> 3) & 511, pair >> 12)).r;
     int reach = pair & kind_reach;
     bool comes = reach > 0 && near > (reach == 1 ? lies_there : runs_far) - 0.1;
     return comes ? 1.0 : (pair & kind_gutters) != 0 && near > may_come - 0.1 ? plan_gutters : 0.0;
@@ -22,9 +23,9 @@ float plan_of(int pair) {
 
 void main() {
     ivec2 block = ivec2(gl_FragCoord.xy);
-    vec2 near = texelFetch(u_near, block, 0).rg;
-    vec2 pairs = texelFetch(u_first, block, 0).rg;
-    bool awake = texelFetch(u_reach, block / 4, 0).r > 0.5;
+    vec2 near = texel_at(u_near, block).rg;
+    vec2 pairs = texel_at(u_first, block).rg;
+    bool awake = texel_at(u_reach, block / 4).r > 0.5;
     int i = int(pairs.x);
     int end = awake && near.r < 0.5 ? i + int(pairs.y) : i;
     float plan = near.r;

@@ -1,4 +1,5 @@
 #version 330 core
+#include "common/texel.glsl"
 #include "tissue/blood_place.glsl"
 #include "tissue/blood_plan.glsl"
 #include "tissue/blood_drop.glsl"
@@ -16,7 +17,7 @@ const int points = 4;
 void main() {
     int index = drop_place(gl_VertexID / points);
     int k = gl_VertexID % points;
-    vec4 deposit = texelFetch(u_deposit, drop_texel(index), 0);
+    vec4 deposit = texel_at(u_deposit, drop_texel(index));
     vec2 size = vec2(textureSize(u_film, 0));
 #ifdef WHOLE
     deposit.xy *= size;
@@ -27,7 +28,7 @@ void main() {
     if (deposit.z > 0.0) {
         vec2 at = deposit.xy;
         if (deposit.w >= 0.0) {
-            vec4 metric = texelFetch(u_metric, ivec2(floor(at)), 0);
+            vec4 metric = texel_at(u_metric, ivec2(floor(at)));
             float r = deposit.w * sqrt((float(k) + drop_noise(uint(index), uint(u_salt))) / float(points));
             float angle = 6.2831853 * (drop_noise(uint(index), uint(u_salt) + 77777u) + 0.38196601 * float(k));
             vec2 offset = clamp(texels_of(r * vec2(cos(angle), sin(angle)), metric), vec2(-12.0), vec2(12.0));
@@ -35,7 +36,7 @@ void main() {
             at = to.z > 0.0 && steps_at(ivec2(floor(to.xy))) ? to.xy : at;
         }
         ivec2 texel = ivec2(floor(at));
-        float added = 0.25 * deposit.z / texelFetch(u_film, texel, 0).w;
+        float added = 0.25 * deposit.z / texel_at(u_film, texel).w;
         v_added = deposit.w >= 0.0 ? vec2(added, 0.0) : vec2(0.0, added);
         gl_Position = vec4(2.0 * (vec2(texel) + 0.5) / size - 1.0, 0.0, 1.0);
     }

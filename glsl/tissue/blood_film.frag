@@ -1,4 +1,5 @@
 #version 330 core
+#include "common/texel.glsl"
 #include "tissue/blood_common.glsl"
 #include "tissue/blood_relief.glsl"
 #include "tissue/blood_plan.glsl"
@@ -29,6 +30,10 @@ vec2 at(vec2 uv) {
     return vec2(film.x, film.w > 0.0 ? 2.0 : -film.w);
 }
 
+vec4 face_at(vec2 place) {
+    return textureLod(u_faces, place, 0.0);
+}
+
 float slope(vec2 low, float here, vec2 high) {
     float difference = (high.y > 0.0 ? high.x : here) - (low.y > 0.0 ? low.x : here);
     return low.y * high.y > 0.0 ? 0.5 * difference : difference;
@@ -45,21 +50,23 @@ vec4 shut(vec4 face, bool at_edge, float steps, vec2 there) {
 }
 
 #ifdef SEAMS
-/// What comes across seams into a cell in a step [mm^3]. first: of its parts, -1 without any.
-float across_seams(int first, float height) {
+/// What comes across seams into a cell in a step [mm^3], and to a gutter the height that lies across [mm]. across: of blood_ground.frag.
+float across_seams(float across, bool gutter, float height) {
+    bool joined = across >= 0.0 && !gutter;
     float came = 0.0;
-    int part = max(first, 0);
+    int part = joined ? int(across) : 0;
     bool more;
     // A loop that asks before its first turn runs its body once more on llvmpipe. What is used after one that asks behind it must be
     // carried from turn to turn, as the sum is: lanes that have left are computed on.
     do {
         vec4 pull = list_item(u_pulls, part);
-        ivec2 cell = cell_of_part(pull);
-        float there = texelFetch(u_film, cell, 0).x;
+        ivec2 cell = gutter ? cell_of_number(max(across, 0.0)) : cell_of_part(pull);
+        float there = texel_at(u_film, cell).x;
         // From a block that rests nothing comes: it would not leave there.
-        bool flows = first >= 0 && pull.z > 0.0 && steps_at(cell);
-        came -= flows ? exchange(pull.y - pull.x * (there - height), pull.x, pull.z, height, there) : 0.0;
-        more = first >= 0 && pull.w > 0.0;
+        bool flows = joined && pull.z > 0.0 && steps_at(cell);
+        float comes = flows ? exchange(pull.y - pull.x * (there - height), pull.x, pull.z, height, there) : 0.0;
+        came = gutter ? there : came - comes;
+        more = joined && pull.w > 0.0;
         ++part;
     } while (more);
     return came;
@@ -84,12 +91,11 @@ void main() {
     bool flows = film.w > 0.0 && (highest > u_flow.y || film.y != 0.0 || (c > 0.0 && u_dries));
     if (flows) {
         ivec2 place = here & (block_side - 1);
-        ivec2 right_face = right_on_ground(here);
-        ivec2 top_face = top_on_ground(here);
-        vec4 right = shut(texelFetch(u_faces, right_face, 0), place.x == block_side - 1, v_steps.y, r);
-        vec4 top = shut(texelFetch(u_faces, top_face, 0), place.y == block_side - 1, v_steps.w, t);
-        vec4 left = shut(texelFetch(u_faces, right_face - ivec2(1, 0), 0), place.x == 0, v_steps.x, l);
-        vec4 bottom = shut(texelFetch(u_faces, top_face - ivec2(8, 0), 0), place.y == 0, v_steps.z, b);
+        vec3 face = faces_on_ground(here);
+        vec4 right = shut(face_at(face.xz), place.x == block_side - 1, v_steps.y, r);
+        vec4 top = shut(face_at(face.yz), place.y == block_side - 1, v_steps.w, t);
+        vec4 left = shut(face_at(vec2(face.x - next_face, face.z)), place.x == 0, v_steps.x, l);
+        vec4 bottom = shut(face_at(vec2(face.y - float(faces_of_row) * next_face, face.z)), place.y == 0, v_steps.z, b);
         vec2 lb = at(low);
         vec2 rb = at(vec2(high.x, low.y));
         vec2 lt = at(vec2(low.x, high.y));
@@ -119,11 +125,10 @@ void main() {
     }
 #ifdef SEAMS
     // What comes across joins the height in the next step. A gutter shows what lies there.
-    float across = texelFetch(u_across, on_ground(here), 0).r;
-    float came = across_seams(film.w > 0.0 ? int(across) : -1, c);
+    float across = textureLod(u_across, on_ground(here), 0.0).r;
+    float came = across_seams(across, film.w < 0.0, c);
     o_film.y += film.w > 0.0 ? came / film.w : 0.0;
-    float there = texelFetch(u_film, film.w < 0.0 ? cell_of_number(max(across, 0.0)) : here, 0).x;
-    o_film = film.w < 0.0 ? vec4(there, 0.0, 0.0, film.w) : o_film;
+    o_film = film.w < 0.0 ? vec4(came, 0.0, 0.0, film.w) : o_film;
 #endif
     o_relief = relief_of(o_film);
 }

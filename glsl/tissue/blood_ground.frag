@@ -1,6 +1,7 @@
 #version 330 core
 // What the film and its look read of the surface, block by block: 64 texels of a block lie side by side, as close together in memory as
 // they are read.
+#include "tissue/blood_ground.glsl"
 #include "tissue/list.glsl"
 #include "tissue/blood_gutter.glsl"
 uniform sampler2D u_list;           // blocks: x, y
@@ -13,7 +14,7 @@ layout(location = 1) out float o_across;  // of gutters: the cell across; of cel
 
 void main() {
     ivec2 place = ivec2(gl_FragCoord.xy);
-    ivec2 block = ivec2(list_item(u_list, (place.y << 4) + (place.x >> 6)).xy);
+    ivec2 block = ivec2(list_item(u_list, place.y * blocks_in_row + place.x / texels_of_block).xy);
     ivec2 at = 8 * block + ivec2(place.x & 7, (place.x >> 3) & 7);
     ivec2 last = textureSize(u_film, 0) - 1;
     float kind = all(lessThanEqual(at, last)) ? texelFetch(u_film, min(at, last), 0).w : 0.0;

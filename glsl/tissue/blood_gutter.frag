@@ -1,4 +1,5 @@
 #version 330 core
+#include "common/texel.glsl"
 #include "tissue/blood_on_ground.glsl"
 #include "tissue/blood_gutter.glsl"
 #include "tissue/blood_relief.glsl"
@@ -10,9 +11,9 @@ layout(location = 1) out float o_relief;
 
 void main() {
     ivec2 here = ivec2(gl_FragCoord.xy);
-    vec4 film = texelFetch(u_film, here, 0);
-    float across = texelFetch(u_across, on_ground(here), 0).r;
-    float height = texelFetch(u_film, cell_of_number(max(across, 0.0)), 0).x;
+    vec4 film = texel_at(u_film, here);
+    float across = textureLod(u_across, on_ground(here), 0.0).r;
+    float height = texel_at(u_film, cell_of_number(max(across, 0.0))).x;
     o_film = film.w < 0.0 ? vec4(height, 0.0, 0.0, -1.0) : film;
     o_relief = relief_of(o_film);
 }

@@ -29,7 +29,7 @@ void main() {
     vec2 here = gl_FragCoord.xy * unit;
     float centre = at(here);
     float h = max(centre, 0.0);
-    vec2 lengths = texelFetch(u_lengths, on_ground(ivec2(gl_FragCoord.xy)), 0).rg;
+    vec2 lengths = textureLod(u_lengths, on_ground(ivec2(gl_FragCoord.xy)), 0.0).rg;
     vec2 falls = vec2(fall(at(here - vec2(unit.x, 0.0)), h, at(here + vec2(unit.x, 0.0))),
                       fall(at(here - vec2(0.0, unit.y)), h, at(here + vec2(0.0, unit.y)))) / lengths;
     // Beside charts there is no length to measure a slope by.

@@ -1,4 +1,5 @@
 #version 330 core
+#include "common/texel.glsl"
 #include "tissue/list.glsl"
 #include "tissue/blood_drop.glsl"
 #include "tissue/blood_held.glsl"
@@ -24,13 +25,13 @@ void main() {
 #ifdef PLACES
     vec4 drop = list_item(u_drops, number);
 #else
-    vec4 drop = texelFetch(u_drops, drop_texel(drop_place(number)), 0);
+    vec4 drop = texel_at(u_drops, drop_texel(drop_place(number)));
 #endif
     if (drop.z > 0.0) {
         // Its outline, in which it leaves its trail.
         vec2 at = drop.xy * u_film_size;
         ivec2 texel = ivec2(clamp(at, vec2(0.0), u_film_size - 1.0));
-        vec4 metric = texelFetch(u_metric, texel, 0);
+        vec4 metric = texel_at(u_metric, texel);
         float sine = sqrt(max(1.0 - metric.z * metric.z, 0.0025));
         float radius = drop_radius(drop.z);
         vec2 extent = min(radius / (max(metric.xy, vec2(1e-12)) * sine) + 1.0, vec2(48.0));
@@ -38,7 +39,7 @@ void main() {
         if ((gl_VertexID & 1) > 0) {
             // And where it may come to before it is marked again, as fast as in blood_move.frag, with the film that it leaves, which
             // goes on by a texel in each step but the first, and a texel beyond, whose slope changes with it.
-            vec4 gravity = texelFetch(u_gravity, texel, 0);
+            vec4 gravity = texel_at(u_gravity, texel);
             float height = u_drop.x * radius;
             way = gravity.xy * (gravity.z * gravity.w * u_flow.x * (1.0 / 3.0) * height * height * u_strength * u_flow.z) * u_film_size;
             way *= u_steps * min(1.0, 2.0 / max(length(way), 1e-20));

@@ -1,4 +1,5 @@
 #version 330 core
+#include "common/texel.glsl"
 #include "tissue/blood_common.glsl"
 #include "tissue/blood_place.glsl"
 #include "tissue/blood_plan.glsl"
@@ -21,11 +22,11 @@ const float longest_end_s = 1.0;  // from its life's end until nothing is left o
 const float slowest = 0.02;      // [mm/s]
 
 vec4 gravity_at(vec2 texel) {
-    return texelFetch(u_gravity, ivec2(floor(texel)), 0);
+    return texel_at(u_gravity, ivec2(floor(texel)));
 }
 
 void main() {
-    vec4 drop = texelFetch(u_drops, ivec2(gl_FragCoord.xy), 0);
+    vec4 drop = texel_at(u_drops, ivec2(gl_FragCoord.xy));
     o_drop = vec4(0.0);
     o_deposit = vec4(0.0);
     if (!(drop.z > 0.0)) {
@@ -57,7 +58,7 @@ void main() {
 
     float volume = drop.z;
     float deposit = u_drop.y * 2.0 * radius * speed * dt;
-    float film = texelFetch(u_film, ivec2(floor(from)), 0).x;
+    float film = texel_at(u_film, ivec2(floor(from))).x;
     bool rests = speed < slowest || film > 0.8 * height || drop.w > u_drop.z || (falls && !u_open);
     if (rests) {
         deposit = max(deposit, volume * (1.0 - exp(-dt / giving_up_s)));

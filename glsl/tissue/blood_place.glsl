@@ -1,3 +1,4 @@
+#include "common/texel.glsl"
 #include "tissue/list.glsl"
 // Where a point of texture space lies on the surface, once it has left its chart.
 uniform sampler2D u_film;     // w > 0: surface; -1: gutter
@@ -12,15 +13,17 @@ vec3 place_on_surface(vec2 texel) {
     if (any(lessThan(at, ivec2(0))) || any(greaterThan(at, last))) {
         return vec3(texel, 0.0);
     }
-    float kind = texelFetch(u_film, at, 0).w;
+    float kind = texel_at(u_film, at).w;
     if (kind >= 0.0) {
         return vec3(texel, kind > 0.0 ? 1.0 : 0.0);
     }
-    int number = max(int(texelFetch(u_numbers, at, 0).r), 0);
+    int number = max(int(texel_at(u_numbers, at).r), 0);
     vec4 jump = list_item(u_jumps, number);
     vec4 slopes = list_item(u_slopes, number);
     vec2 offset = texel - (vec2(at) + 0.5);
     vec2 to = jump.xy + offset.x * slopes.xy + offset.y * slopes.zw;
-    bool found = texelFetch(u_film, clamp(ivec2(floor(to)), ivec2(0), last), 0).w > 0.0;
+    ivec2 there = ivec2(floor(to));
+    // Past the texture's border lies what lies at it.
+    bool found = there == clamp(there, ivec2(0), last) && texel_at(u_film, there).w > 0.0;
     return vec3(found ? to : jump.zw, found || jump.z >= 0.0 ? 2.0 : 0.0);
 }

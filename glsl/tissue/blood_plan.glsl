@@ -1,3 +1,4 @@
+#include "common/texel.glsl"
 // Blocks of 8 x 8 texels, the finer grid over the tiles: as many steps as there are texels along a side lie between two looks, and a
 // film goes on by a texel per step at most. What blood does not reach stays as it is until the next look.
 uniform sampler2D u_plan;  // r: 1 to be stepped, plan_gutters only what its gutters show; g: to be shown
@@ -6,7 +7,7 @@ const int block_side = 8;
 const float plan_gutters = 0.4;
 
 bool steps_in(ivec2 block) {
-    return texelFetch(u_plan, block, 0).r > 0.5;
+    return texel_at(u_plan, block).r > 0.5;
 }
 
 /// Whether the film in a texel is stepped.
@@ -20,5 +21,5 @@ bool is_drawn(float plan) {
 }
 
 bool is_drawn_in(ivec2 block) {
-    return is_drawn(texelFetch(u_plan, block, 0).r);
+    return is_drawn(texel_at(u_plan, block).r);
 }

@@ -1,4 +1,5 @@
 #version 330 core
+#include "common/texel.glsl"
 #include "tissue/list.glsl"
 // Tiles that are marked or have a marked neighbour, within their chart or across a seam: a step cannot reach farther.
 uniform sampler2D u_tiles;   // of blood_scan.frag
@@ -7,7 +8,7 @@ uniform sampler2D u_across;  // four tiles an item: x + (y << 9)
 layout(location = 0) out vec2 o_reach;  // r: to be stepped, g: to be shown
 
 float mark_of(int tile) {
-    return texelFetch(u_tiles, ivec2(tile & 511, tile >> 9), 0).r;
+    return texel_at(u_tiles, ivec2(tile & 511, tile >> 9)).r;
 }
 
 void main() {
@@ -15,9 +16,9 @@ void main() {
     ivec2 last = textureSize(u_tiles, 0) - 1;
     vec2 most = vec2(0.0);
     for (int i = 0; i < 9; ++i) {
-        most = max(most, texelFetch(u_tiles, clamp(tile + ivec2(i % 3 - 1, i / 3 - 1), ivec2(0), last), 0).rg);
+        most = max(most, texel_at(u_tiles, clamp(tile + ivec2(i % 3 - 1, i / 3 - 1), ivec2(0), last)).rg);
     }
-    vec2 list = texelFetch(u_first, tile, 0).rg;
+    vec2 list = texel_at(u_first, tile).rg;
     int i = int(list.x);
     int end = most.r > 0.5 ? i : i + int(list.y);
     while (i < end) {

@@ -1,4 +1,5 @@
 #version 330 core
+#include "common/texel.glsl"
 #include "tissue/blood_plan.glsl"
 #include "tissue/blood_held.glsl"
 // What has happened in each block since the last look: those that were stepped are searched, the others are as they were.
@@ -28,7 +29,7 @@ int bits_of_run(float longest, vec4 beyond) {
 
 void main() {
     ivec2 block = ivec2(gl_FragCoord.xy);
-    vec4 before_all = texelFetch(u_blocks, block, 0);
+    vec4 before_all = texel_at(u_blocks, block);
     float change = 0.0;
     float most = 0.0;
     float held = 0.0;
@@ -43,9 +44,9 @@ void main() {
     for (int i = 0; i < count; ++i) {
         ivec2 in_block = ivec2(i & (block_side - 1), i / block_side);
         ivec2 at = min(block * block_side + in_block, last);
-        vec4 film = texelFetch(u_film, at, 0);
+        vec4 film = texel_at(u_film, at);
         vec2 now = film.xy;
-        vec2 before = texelFetch(u_film_before, at, 0).xy;
+        vec2 before = texel_at(u_film_before, at).xy;
         most = max(most, now.x + now.y);
         change = max(change, abs((now.x - before.x) + (now.y - before.y)));
         // What gutters show flows where it comes from.

@@ -1,4 +1,5 @@
 #version 330 core
+#include "common/texel.glsl"
 #include "tissue/blood_place.glsl"
 #include "tissue/blood_drop.glsl"
 // New drops, each a point at its place in the ring.
@@ -20,7 +21,7 @@ void main() {
     uint seed = uint(more.y);
     float r = source.w * sqrt(drop_noise(seed, 1u));
     float angle = 6.2831853 * drop_noise(seed, 2u);
-    vec4 metric = texelFetch(u_metric, clamp(ivec2(floor(centre)), ivec2(0), ivec2(size) - 1), 0);
+    vec4 metric = texel_at(u_metric, clamp(ivec2(floor(centre)), ivec2(0), ivec2(size) - 1));
     vec2 offset = clamp(texels_of(r * vec2(cos(angle), sin(angle)), metric), vec2(-12.0), vec2(12.0));
     vec3 at = place_on_surface(centre + offset);
     if (at.z == 0.0) {
@@ -30,7 +31,7 @@ void main() {
 #ifdef ENERGY
     // What flew was given where it left, not where it came down.
     vec2 decides = more.z >= 0.0 ? more.zw : at.xy / size;
-    float energy = texelFetch(u_energy, ivec2(clamp(decides, 0.0, 0.9999) * vec2(textureSize(u_energy, 0))), 0).r;
+    float energy = texel_at(u_energy, ivec2(clamp(decides, 0.0, 0.9999) * vec2(textureSize(u_energy, 0)))).r;
     volume *= 1.0 - smoothstep(0.5 * u_sealed, u_sealed, energy);
 #endif
     v_drop = vec4(at.xy / size, volume, 0.0);

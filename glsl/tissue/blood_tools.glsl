@@ -1,3 +1,4 @@
+#include "common/texel.glsl"
 // Suction and rinsing: what they take from a place in one step.
 uniform sampler2D u_position;
 uniform int u_tool_count;
@@ -6,7 +7,7 @@ uniform vec2 u_tool_power[16];  // sucked off [mm per step], share that is rinse
 
 /// Of a film of a height [mm], at a texel [mm].
 float taken(ivec2 texel, float height) {
-    vec3 place = texelFetch(u_position, texel, 0).xyz;
+    vec3 place = texel_at(u_position, texel).xyz;
     float left = height;
     for (int i = 0; i < u_tool_count; ++i) {
         vec3 away = place - u_tool[i].xyz;

@@ -1,4 +1,5 @@
 #version 330 core
+#include "common/texel.glsl"
 #include "tissue/drop_ring.glsl"
 // Which drops of each group of the ring live: a bit for each, in two bytes. Both textures are asked: what died in the last step is still
 // in the one before.
@@ -11,7 +12,7 @@ void main() {
     ivec2 lives = ivec2(0);
     for (int i = 0; i < 16; ++i) {
         ivec2 at = drop_texel(16 * group + i);
-        if (max(texelFetch(u_drops, at, 0).z, texelFetch(u_drops_before, at, 0).z) > 0.0) {
+        if (max(texel_at(u_drops, at).z, texel_at(u_drops_before, at).z) > 0.0) {
             lives[i >> 3] |= 1 << (i & 7);
         }
     }

@@ -1,4 +1,5 @@
+#include "common/texel.glsl"
 // A list of four floats each in rows of 1024 texels (effects/tissue/list_texture.h).
 vec4 list_item(sampler2D list, int i) {
-    return texelFetch(list, ivec2(i & 1023, i >> 10), 0);
+    return texel_at(list, ivec2(i & 1023, i >> 10));
 }
