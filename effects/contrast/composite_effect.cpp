@@ -16,6 +16,7 @@ struct Layer {
     const char* define;
     const char* uniform;
     const char* doc;
+    gl::Filter filter = gl::Filter::nearest;
 };
 // What a scene may lay over one another; each is compiled out where it is empty.
 constexpr std::array<Layer, 5> layers{{
@@ -25,7 +26,7 @@ constexpr std::array<Layer, 5> layers{{
     {"extravasate", "contrast.extravasate", "EXTRAVASATE", "u_extravasate",
      "Smoke that leaves a ruptured vessel."},
     {"capillary", "contrast.capillary", "CAPILLARY", "u_capillary",
-     "Blush of the small vessels; of any resolution."},
+     "Blush of the small vessels; of any resolution.", gl::Filter::linear},
 }};
 constexpr std::size_t combinations = 1U << layers.size();
 
@@ -93,7 +94,7 @@ void CompositeEffect::draw(const Pass& pass) {
     const gl::Program& program = pass.use(index);
     for (std::size_t i = 0; i < layers.size(); ++i) {
         if (((index >> i) & 1U) != 0) {
-            pass.bind(program, layers[i].uniform, layers[i].port, gl::Filter::linear);
+            pass.bind(program, layers[i].uniform, layers[i].port, layers[i].filter);
         }
     }
     program.set("u_background_level", static_cast<float>(params_.background));

@@ -1,4 +1,5 @@
 #version 330 core
+#include "common/texel.glsl"
 // What the detector shows: the densest of all contrast darkens the background.
 uniform float u_background_level;
 #ifdef BACKGROUND
@@ -24,20 +25,20 @@ void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     float ratio = 0.0;
 #ifdef SUMMARY
-    ratio = max(ratio, texelFetch(u_summary, pixel, 0).r);
+    ratio = max(ratio, texel_at(u_summary, pixel).r);
 #endif
 #ifdef REFLUX
-    ratio = max(ratio, texelFetch(u_reflux, pixel, 0).r);
+    ratio = max(ratio, texel_at(u_reflux, pixel).r);
 #endif
 #ifdef EXTRAVASATE
-    ratio = max(ratio, texelFetch(u_extravasate, pixel, 0).r);
+    ratio = max(ratio, texel_at(u_extravasate, pixel).r);
 #endif
 #ifdef CAPILLARY
     // Blurred, so that it may be kept at a lower resolution.
     ratio = max(ratio, textureLod(u_capillary, v_uv, 0.0).r);
 #endif
 #ifdef BACKGROUND
-    float background = texelFetch(u_background, pixel, 0).r;
+    float background = texel_at(u_background, pixel).r;
 #else
     float background = u_background_level;
 #endif

@@ -1,4 +1,5 @@
 #version 330 core
+#include "common/texel.glsl"
 // Joins the vessels with the cloud at the injection point: effects/contrast/summarize_curve.h.
 uniform sampler2D u_main;
 uniform sampler2D u_cloud;
@@ -8,8 +9,8 @@ const float half_width = 0.05;
 
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
-    float main_value = texelFetch(u_main, pixel, 0).r;
-    vec2 cloud = texelFetch(u_cloud, pixel, 0).rg;
+    float main_value = texel_at(u_main, pixel).r;
+    vec2 cloud = texel_at(u_cloud, pixel).rg;
     float r = mix(main_value, cloud.r, cloud.g);
 #ifdef DENSEST
     o_summary = max(main_value, r);

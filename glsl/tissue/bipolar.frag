@@ -1,4 +1,5 @@
 #version 330 core
+#include "common/texel.glsl"
 // Tissue between the jaws of a bipolar tool. CAPSULE, BOX, SPHERE or CYLINDER: the tool's shape, about the
 // origin of its frame, with its axis along x.
 #include "tissue/list.glsl"
@@ -29,8 +30,8 @@ void main() {
     ivec2 texel = ivec2(gl_FragCoord.xy);
     // Nothing burnt yet is a single black texel, so it is looked up by coordinates.
     float e = textureLod(u_before, gl_FragCoord.xy / u_size, 0.0).r;
-    int triangle = int(texelFetch(u_triangles, texel, 0).r) - 1;
+    int triangle = int(texel_at(u_triangles, texel).r) - 1;
     bool held = triangle >= 0 && list_item(u_held, max(triangle, 0) >> 2)[max(triangle, 0) & 3] > 0.5;
-    vec3 place = (u_to_tool * vec4(texelFetch(u_position, texel, 0).xyz, 1.0)).xyz;
+    vec3 place = (u_to_tool * vec4(texel_at(u_position, texel).xyz, 1.0)).xyz;
     o_energy = held && inside(place) ? max(e, u_energy) : e;
 }

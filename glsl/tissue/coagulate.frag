@@ -1,4 +1,5 @@
 #version 330 core
+#include "common/texel.glsl"
 // Energy that contacts give in one frame. METRIC_UV: distances in the texture in place of the world.
 // LONG_WAYS: see contact.glsl. IN_STEPS: contacts come in several steps, which act one after the other.
 #include "tissue/list.glsl"
@@ -28,7 +29,7 @@ void main() {
     vec3 place = vec3(gl_FragCoord.xy / u_size, 0.0);
     bool there = true;
 #else
-    vec4 position = texelFetch(u_position, ivec2(gl_FragCoord.xy), 0);
+    vec4 position = texel_at(u_position, ivec2(gl_FragCoord.xy));
     vec3 place = position.xyz;
     bool there = position.w > 0.0;
 #endif
