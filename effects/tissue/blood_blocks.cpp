@@ -75,13 +75,21 @@ void BloodBlocks::lie_on(const Image& position, std::span<const SeamLink> links,
     std::vector<unsigned char> surface(count * count, 0);
     std::vector<unsigned char> cells(count * count, 0);
     std::vector<unsigned char> seams(count * count, 0);
+    std::vector<unsigned char> beside_cells(count * count, 0);
+    const auto is_cell = [&](int x, int y) {
+        return x >= 0 && y >= 0 && x < size_ && y < size_ && position.at(x, y, 3) > 0.75F;
+    };
     for (int y = 0; y < size_; ++y) {
         for (int x = 0; x < size_; ++x) {
             const std::size_t block = pixel_index(x / block_side, y / block_side, blocks_);
             const float coverage = position.at(x, y, 3);
             surface[block] = coverage > 0.0F ? 255 : surface[block];
             cells[block] = coverage > 0.75F ? 1 : cells[block];
-            seams[block] = joined && coverage > 0.0F && coverage < 0.75F ? 1 : seams[block];
+            const bool gutter = coverage > 0.0F && coverage < 0.75F;
+            seams[block] = joined && gutter ? 1 : seams[block];
+            for (int i = 0; gutter && i < 9; ++i) {
+                beside_cells[block] = is_cell(x + i % 3 - 1, y + i / 3 - 1) ? 1 : beside_cells[block];
+            }
         }
     }
     surface_.upload(std::as_bytes(std::span(surface)));
@@ -102,7 +110,8 @@ void BloodBlocks::lie_on(const Image& position, std::span<const SeamLink> links,
     };
     without_seams_ = add([&](std::size_t i) { return cells[i] != 0 && seams[i] == 0; });
     with_cells_ = add([&](std::size_t i) { return cells[i] != 0 && seams[i] != 0; });
-    listed_ = add([&](std::size_t i) { return cells[i] == 0; });
+    stepped_blocks_ = add([&](std::size_t i) { return cells[i] == 0 && beside_cells[i] != 0; });
+    listed_ = add([&](std::size_t i) { return cells[i] == 0 && beside_cells[i] == 0; });
     list_.upload(*gl_, list, "blocks with a surface");
 }
 
@@ -263,11 +272,11 @@ std::pair<int, int> BloodBlocks::range_of(Drawn drawn) const {
         case Drawn::at_seams:
             return {without_seams_, with_cells_};
         case Drawn::gutters:
-            return {without_seams_, listed_};
+            return {without_seams_, stepped_blocks_};
         case Drawn::settled:
             break;
     }
-    return {0, listed_};
+    return {0, stepped_blocks_};
 }
 
 void BloodBlocks::cover(const Pass& pass, const gl::Program& program, Drawn drawn) const {
@@ -279,10 +288,12 @@ void BloodBlocks::cover(const Pass& pass, const gl::Program& program, Drawn draw
     draw(pass, program, first, last);
 }
 
-void BloodBlocks::cover_changed(const Pass& pass, const gl::Program& program, bool whole) const {
+void BloodBlocks::cover_changed(const Pass& pass, const gl::Program& program, bool whole,
+                                bool only_seen) const {
     bind(pass, program, "u_stepped", stepped_);
     program.set("u_whole", whole);
-    draw(pass, program, 0, listed_);
+    program.set("u_stepped_blocks", stepped_blocks_);
+    draw(pass, program, only_seen ? stepped_blocks_ : 0, listed_);
 }
 
 void BloodBlocks::forget_picture(const Pass& pass) {

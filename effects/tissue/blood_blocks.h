@@ -46,7 +46,7 @@ class BloodBlocks {
     enum class Drawn {
         beside_no_seam,  ///< to be stepped, with cells, none of them at a seam
         at_seams,        ///< to be stepped, the others with cells
-        gutters,         ///< of which nothing but gutters changes
+        gutters,         ///< of which nothing but gutters changes, beside those that a step needs
         settled,         ///< stepped until the last look
     };
 
@@ -55,7 +55,8 @@ class BloodBlocks {
 
     /// The surface is another.
     void lie_on(const Image& position, std::span<const SeamLink> links, std::span<const SeamJump> jumps);
-    /// Blocks with a surface: x, y each; those with cells first, and of these those beside no seam.
+    /// Blocks with a surface: x, y each. Those with cells first, and of these those beside no seam; then
+    /// those with gutters beside cells, which a step reads, and those with gutters that are only seen.
     [[nodiscard]] const gl::Texture& list() const { return list_.texture(); }
     /// That textures have which lay down by blocks what belongs to them, in the order of the list.
     [[nodiscard]] int rows() const { return std::max((listed_ + in_row - 1) / in_row, 1); }
@@ -75,8 +76,10 @@ class BloodBlocks {
 
     /// Draws over blocks with a program in use whose vertex shader is blood_tile.vert.
     void cover(const Pass& pass, const gl::Program& program, Drawn drawn) const;
-    /// Blocks stepped since the last picture; `whole`: all that show blood.
-    void cover_changed(const Pass& pass, const gl::Program& program, bool whole) const;
+    /// Blocks stepped since the last picture; `whole`: all that show blood. `only_seen`: those with gutters
+    /// that no step reads.
+    void cover_changed(const Pass& pass, const gl::Program& program, bool whole,
+                       bool only_seen = false) const;
     void bind_plan(const Pass& pass, const gl::Program& program) const;
     /// The picture is unlike all before.
     void forget_picture(const Pass& pass);
@@ -105,6 +108,7 @@ class BloodBlocks {
     int listed_ = 0;
     int without_seams_ = 0;
     int with_cells_ = 0;
+    int stepped_blocks_ = 0;    ///< all but those that are only seen
     ListTexture tiles_across_;  ///< by the tile that is reached: see blood_reach.frag
     gl::Texture first_tile_;
     ListTexture block_pairs_;  ///< by the block that is reached: see blood_across.frag

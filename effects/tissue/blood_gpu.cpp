@@ -282,6 +282,13 @@ void BloodGpu::begin_picture(const Pass& pass, const BloodMedium& medium, Shown 
     if (before == Shown::unknown) {
         blocks_.forget_picture(pass);
     }
+    if (!seams_->empty) {
+        const gl::Program& gutters = use(pass, BloodShader::gutter_seen);
+        bind(pass, gutters, "u_film", film_[1 - film_now_]);
+        bind(pass, gutters, "u_across", ground_.across());
+        relief_target_.bind();
+        blocks_.cover_changed(pass, gutters, before == Shown::nothing, true);
+    }
     if (groups_.count() == 0) {
         return;
     }
@@ -291,6 +298,7 @@ void BloodGpu::begin_picture(const Pass& pass, const BloodMedium& medium, Shown 
     bind(pass, program, "u_drops", drops());
     pass.bind(program, "u_position", "position");
     pass.bind(program, "u_metric", "metric");
+    pass.bind(program, "u_right", "flow_right");
     set_medium(program, medium);
     groups_.bind(pass, program);
     gl::RasterState state = gl::max_blend_state;

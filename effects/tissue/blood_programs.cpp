@@ -22,6 +22,7 @@ std::vector<ProgramDesc> blood_programs() {
             {tile, "tissue/blood_film.frag", {"STEP", "TOOLS"}},
             {tile, "tissue/blood_film.frag", {"STEP", "TOOLS", "SEAMS"}},
             {tile, "tissue/blood_gutter.frag", {"GUTTERS"}},
+            {tile, "tissue/blood_gutter.frag", {"CHANGED"}},
             {groups, "tissue/blood_move.frag", {}},
             {groups, "tissue/blood_move.frag", {"TOOLS"}},
             {"tissue/blood_deposit.vert", "tissue/blood_add.frag", {}},

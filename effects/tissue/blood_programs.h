@@ -30,6 +30,7 @@ enum class BloodShader : std::size_t {
     film_tools,
     film_tools_seams,
     gutter,
+    gutter_seen,
     move,
     move_tools,
     deposited,

@@ -16,6 +16,7 @@ uniform int u_with_cells;  // from here on blocks have none
 #ifdef CHANGED
 uniform sampler2D u_stepped;  // r: the greatest plan since the picture was drawn
 uniform bool u_whole;         // the picture holds nothing yet
+uniform int u_stepped_blocks;  // from here on no look tells whether blood is seen
 #endif
 flat out vec2 v_ground;  // see blood_on_ground.glsl
 #ifdef STEP
@@ -33,7 +34,7 @@ void main() {
     bool drawn = !is_drawn(plan.r) && is_drawn(texel_at(u_plan_before, block).r);
 #elif defined(CHANGED)
     float stepped = texel_at(u_stepped, block).r;
-    bool drawn = is_drawn(max(stepped, plan.r)) || (u_whole && plan.g > 0.5);
+    bool drawn = is_drawn(max(stepped, plan.r)) || (u_whole && (plan.g > 0.5 || number >= u_stepped_blocks));
 #elif defined(GUTTERS)
     // The others are stepped with their cells.
     bool drawn = is_drawn(plan.r) && (plan.r < 0.5 || number >= u_with_cells);
