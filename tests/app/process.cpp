@@ -44,6 +44,7 @@ Ended run(const std::vector<std::string>& arguments, const Call& call) {
     const std::string here = (folder / "here").string();
     std::filesystem::create_directory(here);
     std::vector<char*> words;
+    words.reserve(arguments.size() + 1);
     for (const std::string& argument : arguments) {
         words.push_back(const_cast<char*>(argument.c_str()));
     }
