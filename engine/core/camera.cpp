@@ -1,5 +1,6 @@
 #include "engine/core/camera.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <glm/ext/matrix_clip_space.hpp>
@@ -211,6 +212,37 @@ glm::dvec3 View::direction_to(const glm::dvec3& point_mm) const {
     return orthographic || !(length > 0.0) ? forward : ray / length;
 }
 
+View view_of(const glm::dmat4& view, const glm::dmat4& projection) {
+    bool usable = true;
+    for (int column = 0; column < 4; ++column) {
+        usable = usable && finite(glm::dvec3(view[column])) && finite(view[column].w) &&
+                 finite(glm::dvec3(projection[column])) && finite(projection[column].w);
+    }
+    const glm::dmat3 turn(view);
+    const double size = glm::determinant(turn);
+    // Of what is seen of x and y, as a share of itself: squares of the smallest scales vanish.
+    const double scale =
+        std::max(glm::length(glm::dvec2(projection[0])), glm::length(glm::dvec2(projection[1])));
+    const glm::dmat2 flat(glm::dvec2(projection[0]) / scale, glm::dvec2(projection[1]) / scale);
+    const double area = glm::determinant(flat);
+    if (!usable || std::abs(std::abs(size) - 1.0) > 1e-3 || !(std::abs(area) > 0.0)) {
+        throw Error(ErrorCode::usage, "a view",
+                    "needs a rigid view matrix and a projection of some height and width, all finite");
+    }
+    View made{.view = view, .projection = projection};
+    made.orthographic = projection[2][3] == 0.0;
+    made.mirrored = area * size < 0.0;
+    made.eye_mm = -(glm::transpose(turn) * glm::dvec3(view[3]));
+    // Rays of a parallel projection may slant: along them neither x nor y of the picture changes.
+    glm::dvec3 along(0.0, 0.0, -1.0);
+    if (made.orthographic) {
+        const glm::dvec2 shear = glm::inverse(flat) * (glm::dvec2(projection[2]) / scale);
+        along = {shear.x, shear.y, -1.0};
+    }
+    made.forward = glm::normalize(glm::transpose(turn) * along);
+    return made;
+}
+
 View make_view(const CameraParams& camera, double aspect, double time_s) {
     check_ranges(camera, aspect, time_s);
     const double angle_rad = glm::radians(camera.orbit_deg_per_s * time_s);
@@ -218,13 +250,10 @@ View make_view(const CameraParams& camera, double aspect, double time_s) {
     const bool c_arm = camera.kind == CameraKind::c_arm;
     const Pose pose = c_arm ? c_arm_pose(camera, angle_rad) : orbiting_pose(camera, angle_rad);
 
-    View view;
-    view.view = glm::lookAtRH(pose.eye_mm, pose.target_mm, pose.up);
-    view.projection = projection_of(camera, aspect);
+    View view = view_of(glm::lookAtRH(pose.eye_mm, pose.target_mm, pose.up), projection_of(camera, aspect));
+    // As given, to the bit.
     view.eye_mm = pose.eye_mm;
     view.forward = glm::normalize(pose.target_mm - pose.eye_mm);
-    view.orthographic = camera.kind == CameraKind::orthographic;
-    view.mirrored = c_arm;
     return view;
 }
 

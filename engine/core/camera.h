@@ -63,12 +63,19 @@ struct View {
     glm::dvec3 eye_mm{0.0};              ///< for orthographic: a point on the eye plane
     glm::dvec3 forward{0.0, 0.0, -1.0};  ///< unit; orthographic: along the rays
     bool orthographic = false;
-    bool mirrored = false;  ///< left and right change places, so front faces turn clockwise (c_arm)
+    bool mirrored =
+        false;  ///< one axis of the picture is turned round, so front faces turn clockwise (c_arm)
+    glm::dvec3 camera_in_eye_mm{0.0};  ///< what lights at the camera count from; not 0 for an eye of two
 
     [[nodiscard]] glm::dmat4 view_projection() const { return projection * view; }
     /// Unit direction from the eye through a world point (orthographic: forward).
     [[nodiscard]] glm::dvec3 direction_to(const glm::dvec3& point_mm) const;
 };
+
+/// View of a host's own matrices; what else a View says follows from them. view: a rigid motion, the eye
+/// looking along its -z; projection: perspective or parallel, along either axis of the picture turned round
+/// if need be. Throws Error(usage) where they are not finite, or no picture could be made by them.
+[[nodiscard]] View view_of(const glm::dmat4& view, const glm::dmat4& projection);
 
 /// View at a time, of an eye between the two when there are two. aspect = width / height > 0. Throws
 /// Error(scene) where the camera is degenerate: eye on target, up along the view, near >= far, SID <= SAD.

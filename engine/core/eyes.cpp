@@ -11,6 +11,7 @@ View shifted_view(const View& view, double offset_mm, double convergence_mm) {
     const glm::dvec3 right(view.view[0][0], view.view[1][0], view.view[2][0]);
     eye.view[3][0] -= offset_mm;
     eye.eye_mm += offset_mm * right;
+    eye.camera_in_eye_mm.x -= offset_mm;
     // Clip x gains offset/convergence for each mm in front of the eye. For a perspective, where that is w, it
     // moves the picture; for an orthographic view it slants the rays.
     const double slope = offset_mm / convergence_mm;

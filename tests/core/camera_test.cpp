@@ -9,6 +9,7 @@
 #include <glm/gtc/matrix_access.hpp>
 
 #include "engine/core/error.h"
+#include "engine/core/eyes.h"
 
 namespace viscera {
 namespace {
@@ -84,6 +85,32 @@ TEST(Camera, ViewMatrixIsRigidAndMirroringIsInTheProjection) {
         EXPECT_NEAR(glm::length(glm::dvec3(view.view * glm::dvec4(view.eye_mm, 1.0))), 0.0, 1e-9);
     }
     EXPECT_GT(make_view(CameraParams{}, 1.0).projection[0][0], 0.0);
+}
+
+TEST(Camera, AViewFollowsFromAHostsMatrices) {
+    for (const CameraKind kind : {CameraKind::perspective, CameraKind::orthographic, CameraKind::c_arm}) {
+        CameraParams camera;
+        camera.kind = kind;
+        camera.eye_mm = {140.0, -500.0, 80.0};
+        camera.stereo = StereoParams{.interpupillary_mm = 90.0, .convergence_mm = 300.0};
+        for (const View& wanted : make_eyes(camera, 1.4).views) {
+            const View made = view_of(wanted.view, wanted.projection);
+            EXPECT_EQ(made.orthographic, wanted.orthographic);
+            EXPECT_EQ(made.mirrored, wanted.mirrored);
+            expect_near(made.eye_mm, wanted.eye_mm, 1e-9);
+            expect_near(made.forward, wanted.forward, tolerance);
+            // Pictures upside down, as hosts with another origin have them.
+            glm::dmat4 turned = wanted.projection;
+            for (int column = 0; column < 4; ++column) {
+                turned[column][1] *= -1.0;
+            }
+            EXPECT_NE(view_of(wanted.view, turned).mirrored, wanted.mirrored);
+            expect_near(view_of(wanted.view, turned).forward, wanted.forward, tolerance);
+            EXPECT_THROW((void)view_of(2.0 * wanted.view, wanted.projection), Error);
+            EXPECT_THROW((void)view_of(wanted.view, glm::dmat4(0.0)), Error);
+            EXPECT_THROW((void)view_of(glm::dmat4(nan), wanted.projection), Error);
+        }
+    }
 }
 
 TEST(Camera, OrthographicKeepsHeightAtAnyDistance) {
