@@ -7,6 +7,7 @@ namespace viscera::organ {
 namespace {
 
 constexpr double farthest_mm = 1e8;
+constexpr double steepest = 1e30;  // as a float, and of a distance of 0 still 0
 
 glm::dvec3 unit_or_zero(const glm::dvec3& v) {
     const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
@@ -26,19 +27,20 @@ LightUniforms make_lights(std::span<const LightParams> lights, const View& view,
         if (far) {
             place = glm::dmat3(view.view) * place;
         } else {
-            if (light.place == LightPlace::world) {
-                place = glm::dvec3(view.view * glm::dvec4(place, 1.0));
-            }
+            place = light.place == LightPlace::world ? glm::dvec3(view.view * glm::dvec4(place, 1.0))
+                                                     : place + view.camera_in_eye_mm;
             place -= centre_in_eye;
             far = !(glm::length(place) <= farthest_mm);
         }
+        made.too_far += far && light.place != LightPlace::infinity ? 1 : 0;
         const bool ended = far && light.place != LightPlace::infinity && light.falloff_mm > 0.0;
         made.place[i] =
             far ? glm::vec4(glm::vec3(unit_or_zero(place)), 0.0F) : glm::vec4(glm::vec3(place), 1.0F);
         made.colour[i] = ended ? glm::vec3(0.0F) : glm::vec3(light.colour);
         const double falloff = far ? 0.0 : light.falloff_mm;
-        made.fall[i] = glm::vec2(falloff > 0.0 ? 1.0 / (falloff * falloff) : 0.0, light.angular);
-        made.glow[i] = glm::vec2(far ? 0.0 : light.glow_mm, light.glow_per_mm2);
+        made.fall[i] =
+            glm::vec2(falloff > 0.0 ? std::min(1.0 / (falloff * falloff), steepest) : 0.0, light.angular);
+        made.glow[i] = glm::vec2(far ? 0.0 : light.glow_mm, std::min(light.glow_per_mm2, steepest));
     }
     return made;
 }

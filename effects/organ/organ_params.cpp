@@ -39,7 +39,8 @@ std::span<const std::string_view> choice_names(NormalEncoding) {
 
 void LightParams::visit(ParamVisitor& v) {
     v.field({.name = "place",
-             .doc = "What position is counted in: the camera's frame (x right, y up, z back), the world, or "
+             .doc = "What position is counted in: the camera's frame (x right, y up, z back; of two eyes the "
+                    "one between them), the world, or "
                     "the direction towards a light at infinity in the world."},
             place);
     v.field({.name = "position", .doc = "Place of the light or direction towards it.", .unit = "mm"},
@@ -96,9 +97,11 @@ void BumpParams::visit(ParamVisitor& v) {
              .min = 0.0,
              .min_excluded = true},
             repeat);
-    v.field({.name = "encoding",
-             .doc = "unsigned: 2 c - 1, and 128 of 8 bits is 0; signed: components as they stand."},
-            encoding);
+    v.field(
+        {.name = "encoding",
+         .doc =
+             "unsigned: 2 c - 1, and 128 of 8 bits, or 32768 of 16, is 0; signed: components as they stand."},
+        encoding);
     v.field({.name = "green_down", .doc = "Green points along -v, as DirectX has it."}, green_down);
 }
 
@@ -125,10 +128,13 @@ void BloodParams::visit(ParamVisitor& v) {
 
 void CutParams::visit(ParamVisitor& v) {
     v.field({.name = "map", .doc = "What cut faces look like, on the mesh's own texture coordinates."}, map);
-    v.field({.name = "vertex_scalar",
-             .doc = "The tissue is cut where this scalar of the mesh, or the host's array of this name, is "
-                    "above 0; empty: where the map's alpha is."},
-            vertex_scalar);
+    v.field(
+        {.name = "vertex_scalar",
+         .doc =
+             "The tissue is cut where this scalar of the mesh (glTF attribute _NAME, or COLOR_0.a: alpha of "
+             "its vertex colours), or the host's array of this name, is above 0; empty: where the "
+             "map's alpha is."},
+        vertex_scalar);
 }
 
 void HintParams::visit(ParamVisitor& v) {
@@ -149,7 +155,7 @@ void SpotParams::visit(ParamVisitor& v) {
 }
 
 void HematomaParams::visit(ParamVisitor& v) {
-    v.field({.name = "spots", .doc = "Any number of spots."}, spots);
+    v.field({.name = "spots", .doc = "Spots, at most 60000 with the host's."}, spots);
     v.field({.name = "host_spots",
              .doc = "Name of the host's array of further spots, 4 floats each: centre, radius; empty: none."},
             host_spots);

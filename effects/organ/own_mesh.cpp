@@ -1,5 +1,6 @@
 #include "effects/organ/own_mesh.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace viscera::organ {
@@ -37,6 +38,13 @@ void OwnMesh::select_scalar(const SurfaceMesh& surface, const std::string& name,
         scalar_.resize(surface.data().positions.size());
         for (std::size_t v = 0; v < scalar_.size(); ++v) {
             scalar_[v] = given->values[surface.merged_vertex(static_cast<std::uint32_t>(v))];
+        }
+        const auto faulty = std::ranges::count_if(scalar_, [](float value) { return !std::isfinite(value); });
+        if (faulty > 0) {
+            log.fault("organ.cut_value", "host values '" + name + "' are not finite; there is no cut there",
+                      static_cast<std::uint64_t>(faulty));
+            std::ranges::replace_if(
+                scalar_, [](float value) { return !std::isfinite(value); }, 0.0F);
         }
         mesh_->update_scalars(host_name_, scalar_);
     }

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <filesystem>
 
 #include "engine/core/hash.h"
 #include "engine/core/image_levels.h"
@@ -12,14 +13,24 @@ namespace {
 
 constexpr double least_z = 1e-3;
 
-/// 8-bit maps cannot say 0 but for their own convention that 128 is it: without that a flat map would tilt
-/// everything by a quarter of a degree.
-double component(float stored, const BumpParams& how, bool eight_bit) {
+/// Largest whole number that a map's components were stored as; 0: as floats.
+double largest_whole(const Image& normals, const std::string& name) {
+    if (info(normals.format).type == ChannelType::unorm8) {
+        return 255.0;
+    }
+    const std::string ending = std::filesystem::path(name).extension().string();
+    return ending == ".png" || ending == ".PNG" ? 65535.0 : 0.0;
+}
+
+/// Whole numbers cannot say 0 but for the convention that 128, or 32768, is it: without that a flat map of 8
+/// bits would tilt everything by a quarter of a degree.
+double component(float stored, const BumpParams& how, double largest) {
     if (how.encoding == NormalEncoding::signed_xyz) {
         return static_cast<double>(stored);
     }
-    if (eight_bit) {
-        return (std::round(static_cast<double>(stored) * 255.0) - 128.0) / 127.0;
+    if (largest > 0.0) {
+        const double half = 0.5 * (largest + 1.0);
+        return (std::round(static_cast<double>(stored) * largest) - half) / (half - 1.0);
     }
     return 2.0 * static_cast<double>(stored) - 1.0;
 }
@@ -30,13 +41,14 @@ Image slopes_of(const Image& normals, const BumpParams& how, Log& log, const std
     const bool eight_bit = info(normals.format).type == ChannelType::unorm8;
     Image slopes =
         make_image(normals.width, normals.height, eight_bit ? PixelFormat::rg16f : PixelFormat::rg32f);
+    const double largest = largest_whole(normals, name);
     std::uint64_t faults = 0;
     for (int y = 0; y < normals.height; ++y) {
         for (int x = 0; x < normals.width; ++x) {
             std::array<double, 3> n{};
             for (int c = 0; c < 3; ++c) {
                 n[static_cast<std::size_t>(c)] =
-                    component(c < normals.channels() ? normals.at(x, y, c) : 1.0F, how, eight_bit);
+                    component(c < normals.channels() ? normals.at(x, y, c) : 1.0F, how, largest);
             }
             if (!(n[2] >= least_z) || !std::isfinite(n[0] / n[2]) || !std::isfinite(n[1] / n[2])) {
                 ++faults;
@@ -86,7 +98,7 @@ std::shared_ptr<gl::Texture> slope_texture(const Pass& pass, const BumpParams& h
     const std::string& name = how.map.path.native();
     const std::uint64_t key = Hash()
                                   .add(std::string_view("organ slopes"))
-                                  .add(std::string_view(name))
+                                  .add(pass.assets().file_key(how.map.path))
                                   .add(how.encoding)
                                   .add(how.green_down)
                                   .value();
@@ -100,7 +112,7 @@ std::shared_ptr<gl::Texture> slope_texture(const Pass& pass, const BumpParams& h
 std::shared_ptr<gl::Texture> colour_texture(const Pass& pass, const AssetPath& file) {
     const std::string& name = file.path.native();
     const std::uint64_t key =
-        Hash().add(std::string_view("organ colours")).add(std::string_view(name)).value();
+        Hash().add(std::string_view("organ colours")).add(pass.assets().file_key(file.path)).value();
     return pass.assets().shared<gl::Texture>(key, [&] {
         const std::shared_ptr<const Image> image = pass.assets().image(file.path);
         return std::make_shared<gl::Texture>(

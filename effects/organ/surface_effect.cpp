@@ -30,6 +30,23 @@ double hint_share(const HintParams& hint, double time_s) {
     return hint.strength * 0.5 * (1.0 - std::cos(2.0 * std::numbers::pi * time_s / hint.period_s));
 }
 
+/// Triangles whose vertices go round the other way than their normals say.
+std::size_t wound_against_normals(const MeshData& mesh) {
+    std::size_t count = 0;
+    for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+        const auto vertex = [&](std::size_t k) { return mesh.indices[3 * t + k]; };
+        const auto edge = [&](std::size_t k) {
+            return glm::dvec3(mesh.positions[vertex(k)]) - glm::dvec3(mesh.positions[vertex(0)]);
+        };
+        glm::dvec3 normal(0.0);
+        for (std::size_t k = 0; k < 3; ++k) {
+            normal += glm::dvec3(mesh.normals[vertex(k)]);
+        }
+        count += glm::dot(glm::cross(edge(1), edge(2)), normal) < 0.0 ? 1 : 0;
+    }
+    return count;
+}
+
 std::uint64_t host_version(const HostValues* values, const std::string& name) {
     const HostValues::Entry* given = values == nullptr || name.empty() ? nullptr : values->find(name);
     return given == nullptr ? 0 : given->version;
@@ -45,6 +62,14 @@ void SurfaceEffect::load(Prepare& prepare) {
     parameters_key_ = prepare.parameters_key();
     surface_ = SurfaceMesh::load(prepare.assets(), params_.mesh);
     to_world_ = placement_matrix(params_.mesh.placement, surface_->centre());
+    const MeshData& mesh = surface_->data();
+    if (const std::size_t turned = wound_against_normals(mesh); 2 * turned > mesh.triangle_count()) {
+        prepare.log().fault("organ.winding",
+                            params_.mesh.file.path.string() + ": " + std::to_string(turned) + " of " +
+                                std::to_string(mesh.triangle_count()) +
+                                " triangles go round clockwise, seen from where their normals "
+                                "point: they are lit as seen from behind");
+    }
 }
 
 /// What was painted on another mesh lies anywhere on this one. The same mesh in another place is none: a
@@ -60,6 +85,15 @@ void SurfaceEffect::check_subjects(Prepare& prepare) const {
                                     "places here");
         }
     }
+}
+
+/// Whether lights add anything that the surface's colour has no share in.
+bool SurfaceEffect::shines() const {
+    const bool highlights =
+        params_.shading.specular > 0.0 && params_.shading.specular_colour != glm::dvec3(0.0);
+    return std::ranges::any_of(params_.lights, [&](const LightParams& light) {
+        return light.colour != glm::dvec3(0.0) && (highlights || glows(light));
+    });
 }
 
 Variant SurfaceEffect::variant_of(const Prepare& prepare) const {
@@ -114,8 +148,8 @@ Work SurfaceEffect::prepare(Prepare& prepare) {
         prepare.log().fault("organ.singular", "the organ's placement is singular; it is not drawn");
         return Work::idle("the organ's placement is singular");
     }
-    if (params_.blending == Blending::blended && params_.opacity == 0.0) {
-        return Work::idle("the membrane is clear");
+    if (params_.blending == Blending::blended && params_.opacity == 0.0 && !shines()) {
+        return Work::idle("the membrane is clear, and nothing shines on it");
     }
     const View& view = frame.eye();
     const PixelRect region =
@@ -135,6 +169,7 @@ Work SurfaceEffect::prepare(Prepare& prepare) {
     }
     Hash key;
     key.add(parameters_key_).add(view.view).add(view.projection).add(surface_->shape_key());
+    key.add(view.camera_in_eye_mm);
     key.add(variant.hint ? hint_share_ : 0.0);
     key.add(params_.hematoma.used() ? hematoma_.key() : 0);
     key.add(host_version(frame.values, params_.cut.vertex_scalar));
@@ -156,7 +191,8 @@ const gl::Mesh& SurfaceEffect::mesh(const Pass& pass, const glm::dmat4& to_eye) 
     return own_mesh_.mesh();
 }
 
-void SurfaceEffect::set_view(const gl::Program& program, const View& view, const glm::dmat4& to_eye) {
+void SurfaceEffect::set_view(const Pass& pass, const gl::Program& program, const View& view,
+                             const glm::dmat4& to_eye) {
     const glm::dvec3 centre_in_eye(to_eye * glm::dvec4(surface_->centre(), 1.0));
     program.set("u_to_clip", glm::mat4(view.projection * to_eye));
     program.set("u_turn", glm::mat3(glm::dmat3(to_eye)));
@@ -167,7 +203,11 @@ void SurfaceEffect::set_view(const gl::Program& program, const View& view, const
     // An orthographic view's rays slant for an eye of two.
     program.set("u_towards_eye", view.orthographic ? glm::vec3(-p[2][0] / p[0][0], -p[2][1] / p[1][1], 1.0F)
                                                    : glm::vec3(0.0F));
-    set_lights(program, make_lights(params_.lights, view, centre_in_eye));
+    const LightUniforms lights = make_lights(params_.lights, view, centre_in_eye);
+    if (lights.too_far > 0) {
+        pass.log().fault("organ.light_far", "lights beyond 10^8 mm count as at infinity", lights.too_far);
+    }
+    set_lights(program, lights);
 }
 
 void SurfaceEffect::set_material(const Pass& pass, const gl::Program& program) {
@@ -244,7 +284,7 @@ void SurfaceEffect::draw(const Pass& pass) {
     const gl::Mesh& triangles = mesh(pass, to_eye);
     const auto chosen = std::ranges::find(variants_, variant_);
     const gl::Program& program = pass.use(static_cast<std::size_t>(chosen - variants_.begin()));
-    set_view(program, view, to_eye);
+    set_view(pass, program, view, to_eye);
     set_material(pass, program);
     if (variant_.hematoma) {
         hematoma_.set(pass, program, params_.hematoma, view,

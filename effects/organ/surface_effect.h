@@ -42,10 +42,11 @@ class SurfaceEffect final : public Effect {
     void check_subjects(Prepare& prepare) const;
     [[nodiscard]] Variant variant_of(const Prepare& prepare) const;
     [[nodiscard]] bool has_relief() const;
+    [[nodiscard]] bool shines() const;
     [[nodiscard]] bool needs_own_mesh() const;
     void name_features(const Variant& variant);
     [[nodiscard]] const gl::Mesh& mesh(const Pass& pass, const glm::dmat4& to_eye);
-    void set_view(const gl::Program& program, const View& view, const glm::dmat4& to_eye);
+    void set_view(const Pass& pass, const gl::Program& program, const View& view, const glm::dmat4& to_eye);
     void set_material(const Pass& pass, const gl::Program& program);
     void set_raster(const Pass& pass, const View& view) const;
 

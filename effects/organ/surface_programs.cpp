@@ -1,6 +1,8 @@
+#include <algorithm>
 #include <array>
 #include <string_view>
 
+#include "effects/organ/lights.h"
 #include "effects/organ/surface_effect.h"
 
 // What an organ reads and writes, and the programs that this may take.
@@ -69,13 +71,9 @@ std::span<const ProgramDesc> SurfaceEffect::programs() const {
             common.push_back(std::move(define));
         }
     };
-    bool glows = false;
-    for (const LightParams& light : params_.lights) {
-        glows = glows || (light.glow_mm > 0.0 && light.place != LightPlace::infinity);
-    }
     add(has_relief(), "NORMAL_MAP");
     add(!params_.lights.empty(), "LIGHTS " + std::to_string(params_.lights.size()));
-    add(glows, "GLOW");
+    add(std::ranges::any_of(params_.lights, glows), "GLOW");
     add(params_.focus.has_value(), "FOCUS");
     add(params_.blending == Blending::blended, "BLENDED");
 

@@ -236,6 +236,16 @@ MeshData convert(const tinygltf::Model& model, const tinygltf::Primitive& primit
             mesh.scalars.push_back({name, {values.begin(), values.end()}});
         }
     }
+    const auto colour = primitive.attributes.find("COLOR_0");
+    if (colour != primitive.attributes.end() &&
+        model.accessors[static_cast<std::size_t>(colour->second)].type == TINYGLTF_TYPE_VEC4) {
+        const std::vector<double> values = read_accessor(model, colour->second);
+        VertexScalars alpha{"COLOR_0.a", {}};
+        for (std::size_t v = 0; v < values.size() / 4; ++v) {
+            alpha.values.push_back(static_cast<float>(values[4 * v + 3]));
+        }
+        mesh.scalars.push_back(std::move(alpha));
+    }
     mesh.indices = triangles_of(model, primitive, mesh.positions.size());
     if (mirrored) {
         for (std::size_t t = 0; t + 2 < mesh.indices.size(); t += 3) {

@@ -32,9 +32,9 @@ vec4 blurred(vec2 centre) {
         vec4 there = texelFetch(u_picture, clamp(ivec2(floor(centre + way)), ivec2(0), last), 0);
         float reach = clamp(abs(2.0 * there.a - 1.0) * u_radius - length(way) + 1.0, 0.0, 1.0);
         float weight = there.a >= here.a ? 1.0 : reach;
-        sum += weight * there.rgb;
-        weights += weight;
+        bool counts = usable(there);
+        sum += counts ? weight * there.rgb : vec3(0.0);
+        weights += counts ? weight : 0.0;
     }
-    vec4 mean = vec4(sum / weights, here.a);
-    return usable(mean) ? mean : here;
+    return vec4(sum / weights, here.a);
 }

@@ -68,7 +68,11 @@ layout(location = 0) out vec4 o_colour;
 #include "organ/focus.glsl"
 #endif
 
-const float largest = 65504.0;  // that a half holds
+// Within what a half holds. What is no number, as a target that a host lends may hold, is black.
+vec3 storable(vec3 colour) {
+    const float largest = 65504.0;
+    return dot(abs(colour), vec3(1.0)) < 1e30 ? clamp(colour, -largest, largest) : vec3(0.0);
+}
 
 void main() {
     vec3 in_eye = u_pivot_in_eye + v_place;
@@ -164,10 +168,12 @@ void main() {
 #ifdef BLENDED
     // The way through a slab is longer the more it is looked at from the side; what shines on it is not seen through it.
     float way = 1.0 / max(abs(dot(unit(v_normal), eye)), 1e-3);
-    float cover = colour.a * (1.0 - exp(-u_depth_of_slab * way));
-    o_colour = vec4(min(scattered * cover + added, largest), stored * cover);
+    // Where the map's alpha is 0 there is a hole, on which nothing shines.
+    float there = colour.a > 0.0 ? min(colour.a, 1.0) : 0.0;
+    float cover = there * (1.0 - exp(-u_depth_of_slab * way));
+    o_colour = vec4(storable(scattered * cover + added * there), stored * cover);
     o_cover = vec4(cover);
 #else
-    o_colour = vec4(min(scattered + added, largest), stored);
+    o_colour = vec4(storable(scattered + added), stored);
 #endif
 }

@@ -64,6 +64,23 @@ TEST_F(Gltf, ScalarsAndNamesComeAlong) {
     EXPECT_EQ(mesh.scalars[0].values, (std::vector<float>{0.25F, 0.5F, 0.75F, 1.0F}));
 }
 
+TEST_F(Gltf, AlphaOfVertexColoursIsAScalar) {
+    const std::string json =
+        document(R"({"attributes":{"POSITION":0,"COLOR_0":1}})",
+                 R"({"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"},)"
+                 R"({"bufferView":1,"componentType":5121,"normalized":true,"count":3,"type":"VEC4"})",
+                 R"({"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":12})", 48);
+    const std::string binary = bytes_of(std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0}) +
+                               bytes_of(std::vector<std::uint8_t>{9, 9, 9, 0, 9, 9, 9, 51, 9, 9, 9, 255});
+    const MeshData mesh = load(json, binary).at(0);
+    ASSERT_EQ(mesh.scalars.size(), 1U);
+    EXPECT_EQ(mesh.scalars[0].name, "COLOR_0.a");
+    EXPECT_EQ(mesh.scalars[0].values, (std::vector<float>{0.0F, 0.2F, 1.0F}));
+    // Colours without alpha have none.
+    EXPECT_TRUE(
+        load(replaced(replaced(json, "VEC4", "VEC3"), "5121,", "5121,"), binary).at(0).scalars.empty());
+}
+
 TEST_F(Gltf, NodeTransformsAreApplied) {
     // Turned by 90 degrees about z, then doubled along x of the mesh, then moved.
     const MeshData mesh =

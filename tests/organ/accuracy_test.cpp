@@ -188,6 +188,38 @@ TEST_F(OrganAccuracy, BackFaces) {
     }
 }
 
+TEST_F(OrganAccuracy, PlacedTurnedStretchedAndMirrored) {
+    // Steep parts are seen small, but not so small that texels of a map that repeats so little are.
+    use_normal_map(0.8, 0.4);
+    s.parameters["hematoma"] = {{"spots", {{{"centre", {5, -8, 3}}, {"radius", 14}}}},
+                                {"colour", {0.2, 0.05, 0.1}},
+                                {"strength", 0.75}};
+    s.organ.hematoma_colour = {0.2, 0.05, 0.1};
+    s.organ.hematoma_strength = 0.75;
+    s.organ.spots = {{5, -8, 3, 14}};
+    for (const double mirror : {1.0, -1.0}) {
+        s.parameters["mesh"]["placement"] = {
+            {"move_mm", {2, -4, 3}}, {"rotate_deg", {14, -20, 35}}, {"scale", {mirror * 0.9, 1.6, 1.1}}};
+        expect(mirror > 0.0 ? "placed" : "placed and mirrored");
+    }
+    s.parameters["faces"] = "front";
+    s.organ.back = false;
+    const Image image = s.render();
+    EXPECT_LE(deviation(image, s.expected(), 0, 0).max, bound);
+    EXPECT_GE(deviation(image, s.expected(), 0, 0).content, least_content) << "the front is the front still";
+}
+
+TEST_F(OrganAccuracy, GreenDown) {
+    use_normal_map();
+    s.parameters["normal_map"]["green_down"] = true;
+    for (int y = 0; y < s.organ.slopes.picture.height; ++y) {
+        for (int x = 0; x < s.organ.slopes.picture.width; ++x) {
+            s.organ.slopes.picture.at(x, y, 1) *= -1.0;
+        }
+    }
+    expect("normal map, green down");
+}
+
 TEST_F(OrganAccuracy, Energy) {
     use_energy();
     expect("energy");
@@ -287,9 +319,13 @@ TEST_F(OrganAccuracy, EightLightsOfEveryKind) {
     const std::array<const char*, 3> places{"camera", "world", "infinity"};
     for (int i = 0; i < 8; ++i) {
         const std::size_t kind = static_cast<std::size_t>(i) % 3;
-        const glm::dvec3 position(7.0 * std::sin(2.0 * i), -40.0 + 3.0 * i, 8.0 * std::cos(3.0 * i));
+        // The last one of the camera's lies behind the organ, which it does not light however slowly it
+        // falls.
+        const bool behind = i == 6;
+        const glm::dvec3 position(7.0 * std::sin(2.0 * i), -40.0 + 3.0 * i,
+                                  behind ? -130.0 : 8.0 * std::cos(3.0 * i));
         const glm::dvec3 colour(0.1 + 0.02 * i, 0.2, 0.25 - 0.02 * i);
-        const double angular = 0.5 * i;
+        const double angular = behind ? 0.02 : 0.5 * i;
         const double falloff = kind == 2 ? 0.0 : 120.0 + 10.0 * i;
         const double glow = i == 1 ? 32.0 : 0.0;
         s.parameters["lights"].push_back({{"place", places[kind]},
@@ -336,6 +372,39 @@ TEST_F(OrganAccuracy, Membrane) {
     s.parameters["focus"] = {{"near_mm", 60}, {"focus_mm", 92}, {"far_mm", 125}};
     s.organ.focus = reference::Focus{60, 92, 125, 1.0, 1.0};
     expect("membrane with focus");
+}
+
+TEST_F(OrganAccuracy, MembraneWhoseMapHasHolesAndMore) {
+    feed("organ.diffuse", s.organ.diffuse,
+         [](double u, double v, int c) { return c == 3 ? 3.0F * wave(u, v, c) - 1.0F : wave(u, v, c); });
+    s.organ.colour = glm::dvec3(1.0);
+    s.parameters["blending"] = "blended";
+    s.parameters["opacity"] = 0.45;
+    s.organ.blended = true;
+    s.organ.opacity = 0.45;
+    expect("membrane, alpha from -1 to 2");
+}
+
+TEST_F(OrganAccuracy, MembraneOfOneSide) {
+    s.use_mesh(patch_obj({.cells = 14, .bend_mm = 40.0}));
+    s.camera["eye_mm"] = {60, -70, 23};
+    s.parameters["blending"] = "blended";
+    s.parameters["opacity"] = 0.45;
+    s.organ.blended = true;
+    s.organ.opacity = 0.45;
+    const Image both = s.render();
+    for (const char* faces : {"front", "back"}) {
+        s.parameters["faces"] = faces;
+        s.organ.front = std::string_view(faces) == "front";
+        s.organ.back = !s.organ.front;
+        const Image image = s.render();
+        EXPECT_NE(image.data, both.data);
+        const reference::Buffer wanted = s.expected();
+        for (int c = 0; c < 4; ++c) {
+            EXPECT_LE(deviation(image, wanted, c, c).max, bound) << faces << ", channel " << c;
+        }
+        EXPECT_GE(deviation(image, s.expected(), 0, 0).content, std::size_t{300}) << faces;
+    }
 }
 
 TEST_F(OrganAccuracy, EverythingAtOnce) {

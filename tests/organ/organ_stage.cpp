@@ -144,6 +144,47 @@ reference::OrganMap OrganStage::read_target(const std::string& name) {
     return {.picture = to_buffer(stage_.renderer().read(name))};
 }
 
+void OrganStage::place(const MeshData& mesh) {
+    const json& given = parameters["mesh"];
+    if (!given.contains("placement")) {
+        return;
+    }
+    const auto vector = [&](const char* name, const glm::dvec3& otherwise) {
+        const json& placement = given["placement"];
+        return placement.contains(name)
+                   ? glm::dvec3(placement[name][0], placement[name][1], placement[name][2])
+                   : otherwise;
+    };
+    const Bounds box = mesh.bounds();
+    const glm::dvec3 centre = 0.5 * (glm::dvec3(box.min) + glm::dvec3(box.max));
+    const glm::dvec3 turn = glm::radians(vector("rotate_deg", glm::dvec3(0.0)));
+    glm::dmat3 matrix(1.0);
+    for (int axis = 2; axis >= 0; --axis) {
+        glm::dmat3 about(1.0);
+        const int a = (axis + 1) % 3;
+        const int b = (axis + 2) % 3;
+        about[a][a] = about[b][b] = std::cos(turn[axis]);
+        about[a][b] = std::sin(turn[axis]);
+        about[b][a] = -std::sin(turn[axis]);
+        matrix = matrix * about;
+    }
+    const glm::dvec3 scale = vector("scale", glm::dvec3(1.0));
+    for (int axis = 0; axis < 3; ++axis) {
+        matrix[axis] *= scale[axis];
+    }
+    const glm::dmat3 covector = glm::transpose(glm::inverse(matrix));
+    for (std::size_t v = 0; v < organ.positions.size(); ++v) {
+        organ.positions[v] =
+            centre + vector("move_mm", glm::dvec3(0.0)) + matrix * (organ.positions[v] - centre);
+        organ.normals[v] = covector * organ.normals[v];  // as mixed in the mesh, then turned
+    }
+    if (glm::determinant(matrix) < 0.0) {  // the outside stays the outside
+        for (std::size_t t = 0; t + 2 < organ.indices.size(); t += 3) {
+            std::swap(organ.indices[t + 1], organ.indices[t + 2]);
+        }
+    }
+}
+
 reference::Buffer OrganStage::expected() {
     Log log;
     const MeshData mesh = io::merge(io::load_meshes(mesh_file_, {}, log));
@@ -151,6 +192,7 @@ reference::Buffer OrganStage::expected() {
     organ.normals.assign(mesh.normals.begin(), mesh.normals.end());
     organ.uvs.assign(mesh.uvs.begin(), mesh.uvs.end());
     organ.indices = mesh.indices;
+    place(mesh);
     Frame frame = stage_.renderer().still(0.0);
     slant(frame);
     organ.view = frame.eye().view;

@@ -54,13 +54,14 @@ class OrganStage {
     Image render(double time_s = 0.0, const HostValues* values = nullptr);
     /// A filled target as the pass read it.
     [[nodiscard]] reference::OrganMap read_target(const std::string& name);
-    /// The reference's picture, over the target's clear value.
+    /// The reference's picture, over the target's clear value. With the mesh's placement, if there is one.
     [[nodiscard]] reference::Buffer expected();
     [[nodiscard]] Stage& stage() { return stage_; }
     [[nodiscard]] const FrameReport& report() const { return report_; }
 
   private:
     void slant(Frame& frame) const;
+    void place(const MeshData& mesh);
     struct Filled {
         std::string target;
         std::string file;

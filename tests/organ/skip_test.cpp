@@ -1,3 +1,6 @@
+#include <array>
+#include <utility>
+
 #include <gtest/gtest.h>
 
 #include "tests/organ/organ_stage.h"
@@ -110,19 +113,39 @@ TEST_F(OrganSkip, AHintThatComesAndGoesIsDrawnAnewAndAStandingOneIsNot) {
     EXPECT_EQ(pass_of(s.stage().render(0.4), "organ").status, PassStatus::cached);
 }
 
-TEST_F(OrganSkip, AClearMembraneIsNotDrawn) {
+TEST_F(OrganSkip, AClearMembraneIsNotDrawnWhereNothingShinesOnIt) {
     const Image plain = s.render();
-    json scene = s.scene();
-    json membrane = s.parameters;
-    membrane["blending"] = "blended";
-    membrane["into_picture"] = true;
-    membrane["opacity"] = 0;
-    scene["passes"].push_back(pass("membrane", "organ.surface", membrane));
-    s.stage().load(scene);
-    const PassReport report = pass_of(s.stage().render(0.0), "membrane");
+    const auto through = [&](double opacity, double specular, double glow_mm, PassReport& report) {
+        json scene = s.scene();
+        json membrane = s.parameters;
+        membrane["mesh"]["placement"] = {{"move_mm", {0, -3, 0}}};
+        membrane["blending"] = "blended";
+        membrane["into_picture"] = true;
+        membrane["opacity"] = opacity;
+        membrane["shading"]["specular"] = specular;
+        membrane["lights"][0]["glow_mm"] = glow_mm;
+        scene["passes"].push_back(pass("membrane", "organ.surface", membrane));
+        s.stage().load(scene);
+        report = pass_of(s.stage().render(0.0), "membrane");
+        return s.stage().renderer().read("organ.color");
+    };
+    PassReport report;
+    EXPECT_EQ(through(0.0, 0.0, 0.0, report).data, plain.data);
     EXPECT_EQ(report.status, PassStatus::idle);
-    EXPECT_EQ(report.reason, "the membrane is clear");
-    EXPECT_EQ(s.stage().renderer().read("organ.color").data, plain.data);
+    EXPECT_EQ(report.reason, "the membrane is clear, and nothing shines on it");
+    // Highlights and overexposure lie on top of it, however clear it is.
+    const std::array<std::pair<double, double>, 2> shining{{{0.3, 0.0}, {0.0, 200.0}}};
+    for (const auto& [specular, glow_mm] : shining) {
+        const Image clear = through(0.0, specular, glow_mm, report);
+        EXPECT_NE(report.status, PassStatus::idle);
+        EXPECT_NE(clear.data, plain.data);
+        const Image nearly = through(1e-9, specular, glow_mm, report);
+        const std::vector<float> a = to_floats(clear);
+        const std::vector<float> b = to_floats(nearly);
+        for (std::size_t i = 0; i < a.size(); ++i) {
+            ASSERT_NEAR(a[i], b[i], 1e-6F);
+        }
+    }
 }
 
 TEST_F(OrganSkip, WhatIsUncoveredMayBeClearedBeforeOrAfter) {

@@ -204,8 +204,9 @@ Shaded shade(const Organ& organ, const Plane& plane, int x, int y) {
         return {glm::dvec4(colour * scattered + added, stored), 1.0};
     }
     const double way = 1.0 / std::max(std::abs(glm::dot(smooth, eye)), 1e-3);
-    const double cover = alpha * (1.0 - std::pow(1.0 - organ.opacity, way));
-    return {glm::dvec4(colour * scattered * cover + added, stored * cover), cover};
+    const double there = std::clamp(alpha, 0.0, 1.0);
+    const double cover = there * (1.0 - std::pow(1.0 - organ.opacity, way));
+    return {glm::dvec4(colour * scattered * cover + added * there, stored * cover), cover};
 }
 
 /// Triangles as they are drawn: as they come, or from back to front.
