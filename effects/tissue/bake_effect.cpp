@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "engine/core/error.h"
 #include "engine/core/hash.h"
@@ -104,8 +105,10 @@ Work BakeEffect::prepare(Prepare& prepare) {
     if (!surface_ || surface_->size() != size.x || parameters_key_ != prepare.parameters_key()) {
         parameters_key_ = prepare.parameters_key();
         surface_ = BakedSurface::load(prepare.assets(), params_.mesh, size.x);
+        baker_ = std::make_shared<const int>(0);
         map_.reset();
     }
+    surface_->set_baker(baker_);
     surface_->move(prepare);
     if (surface_->mesh().data().indices.empty()) {
         return Work::idle("the mesh has no triangles");
@@ -121,6 +124,7 @@ Work BakeEffect::prepare(Prepare& prepare) {
     if (!map_) {
         find_map(prepare);
     }
+    count_collapsed(prepare.log());
     wanted_ = 0;
     for (std::size_t i = 0; i < features.size(); ++i) {
         wanted_ |= (prepare.has(features[i].port) ? 1U : 0U) << i;
@@ -153,6 +157,40 @@ void BakeEffect::find_map(Prepare& prepare) {
         "triangles span more than 4 textures; nothing is painted on them");
     say("tissue.non_manifold", faults.non_manifold_edges,
         "edges join more than two triangles; what is painted ends there");
+    say("tissue.gutter", faults.narrow_texels,
+        "texels lie within 4 texels of two charts, whose gutters are narrower than that at a 'size' of " +
+            std::to_string(map_->size) + "; seams may show");
+    if (faults.mirrored_triangles > 0) {
+        prepare.log().info(file + ": " + std::to_string(faults.mirrored_triangles) + " of " +
+                           std::to_string(mesh.triangle_count()) +
+                           " triangles are mirrored in the texture; they are painted like others");
+    }
+}
+
+/// Of triangles that a host has moved. The file's own without area are said and dropped when it is read.
+void BakeEffect::count_collapsed(Log& log) {
+    const std::uint64_t shape = surface_->mesh().shape_key();
+    if (std::exchange(counted_shape_, shape) == shape || shape == surface_->mesh().key()) {
+        return;
+    }
+    const MeshData& mesh = surface_->mesh().data();
+    constexpr double thinnest = 1e-6;  // height over length
+    std::uint64_t collapsed = 0;
+    for (std::size_t t = 0; t + 2 < mesh.indices.size(); t += 3) {
+        const auto corner = [&](std::size_t k) { return glm::dvec3(mesh.positions[mesh.indices[t + k]]); };
+        const glm::dvec3 a = corner(1) - corner(0);
+        const glm::dvec3 b = corner(2) - corner(0);
+        const double longest2 = std::max({glm::dot(a, a), glm::dot(b, b), glm::dot(b - a, b - a)});
+        collapsed += glm::length(glm::cross(a, b)) > thinnest * longest2 ? 0 : 1;
+    }
+    if (collapsed > 0) {
+        log.fault(
+            "tissue.collapsed",
+            params_.mesh.file.path.string() + ": " + std::to_string(collapsed) +
+                " triangles have no area where the host has moved them; what is painted on them lies on "
+                "a line",
+            collapsed);
+    }
 }
 
 void BakeEffect::fill_vertices() {

@@ -31,14 +31,17 @@ class BakeEffect final : public Effect {
     struct Gpu;
     void find_map(Prepare& prepare);
     void fill_vertices();
+    void count_collapsed(Log& log);
     void upload(const Pass& pass);
 
     BakeParams params_;
     std::vector<ProgramDesc> programs_;
     std::uint64_t parameters_key_ = 0;
     std::shared_ptr<BakedSurface> surface_;
+    std::shared_ptr<const void> baker_;  ///< by which the surface knows that it is baked
     std::shared_ptr<const TexelMap> map_;
     std::uint64_t content_key_ = 0;
+    std::uint64_t counted_shape_ = 0;  ///< in which collapsed triangles were counted
     std::uint32_t wanted_ = 0;         ///< bit i: feature i is read by somebody
     std::vector<glm::vec4> vertices_;  ///< two per vertex: world position and u, world normal and v
     std::unique_ptr<Gpu> gpu_;

@@ -80,6 +80,12 @@ void BakedSurface::move(Prepare& prepare) {
 
 void BakedSurface::check_bake(Prepare& prepare, std::string_view pass) const {
     check_mesh(prepare, pass, mesh_->key(), name_);
+    if (prepare.subject("position") == mesh_->key() && baker_.expired()) {
+        prepare.log().fault("tissue.other_place",
+                            std::string(pass) +
+                                " has another 'mesh.placement' or 'mesh.host_positions' of '" + name_ +
+                                "' than the bake that it reads: it looks for places where they are not");
+    }
 }
 
 void check_mesh(Prepare& prepare, std::string_view pass, std::uint64_t mesh_key, const std::string& name) {

@@ -43,7 +43,10 @@ class BakedSurface {
     /// Takes the host's vertices of this frame, see SurfaceMesh::move().
     void move(Prepare& prepare);
 
-    /// See check_mesh().
+    /// A bake draws this surface, at this place, for as long as it holds `baker`.
+    void set_baker(const std::shared_ptr<const void>& baker) { baker_ = baker; }
+    /// Says so when the bake that a pass reads is of another mesh, or of this one where another placement or
+    /// host puts it. `pass`: its effect's name.
     void check_bake(Prepare& prepare, std::string_view pass) const;
     [[nodiscard]] const SurfaceMesh& mesh() const { return *mesh_; }
     [[nodiscard]] const glm::dmat4& to_world() const { return to_world_; }
@@ -59,6 +62,7 @@ class BakedSurface {
     std::string host_positions_;  ///< name of the host's array
     glm::dmat4 to_world_{1.0};
     int size_ = 0;
+    std::weak_ptr<const void> baker_;
     std::shared_ptr<const TexelMap> map_;
     std::optional<TileTree> tiles_;
     std::uint64_t tiles_shape_ = 0;  ///< of the positions that the tiles were placed by

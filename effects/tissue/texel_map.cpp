@@ -19,7 +19,7 @@ namespace {
 constexpr std::uint32_t none = MeshAdjacency::none;
 
 /// Named in the disk cache; another number when maps are made in another way.
-constexpr std::string_view cached_kind = "texel-map-3";
+constexpr std::string_view cached_kind = "texel-map-4";
 
 bool read_map(const io::DiskCache& cache, std::uint64_t key, int size, TexelMap& map) {
     const auto bytes = cache.load(cached_kind, key);
@@ -49,6 +49,7 @@ class MapMaker {
         report(progress, 0.3);
         find_gutters();
         report(progress, 0.6);
+        count_narrow_texels();
         walk_gutters();
         report(progress, 1.0);
         return std::move(map_);
@@ -148,6 +149,79 @@ class MapMaker {
         }
     }
 
+    /// By triangle a triangle that stands for its chart: all that hang together in the texture.
+    [[nodiscard]] std::vector<std::uint32_t> find_charts() const {
+        std::vector<std::uint32_t> chart(mesh_.indices.size() / 3, none);
+        std::vector<std::uint32_t> waiting;
+        for (std::uint32_t t = 0; t < chart.size(); ++t) {
+            if (chart[t] != none) {
+                continue;
+            }
+            chart[t] = t;
+            waiting.push_back(t);
+            while (!waiting.empty()) {
+                const std::uint32_t here = waiting.back();
+                waiting.pop_back();
+                for (std::uint32_t h = 3 * here; h < 3 * here + 3; ++h) {
+                    const std::uint32_t across = adjacency_.across[h];
+                    if (across != none && chart[across / 3] == none && !is_border(h)) {
+                        chart[across / 3] = t;
+                        waiting.push_back(across / 3);
+                    }
+                }
+            }
+        }
+        return chart;
+    }
+
+    /// Texels that two charts want for their gutters, or that one wants and the other covers.
+    void count_narrow_texels() {
+        const std::vector<std::uint32_t> chart = find_charts();
+        const int n = map_.size;
+        std::vector<std::uint32_t> chart_of(map_.texels.size(), none);
+        for (std::size_t i = 0; i < chart_of.size(); ++i) {
+            if (map_.texels[i].owner != 0.0F) {
+                chart_of[i] = chart[static_cast<std::size_t>(map_.texels[i].owner) - 1];
+            } else if (gutters_[i].half_edge != none) {
+                chart_of[i] = chart[gutters_[i].half_edge / 3];
+            }
+        }
+        std::vector<bool> narrow(map_.texels.size(), false);
+        for (int y = 0; y < n; ++y) {
+            for (int x = 0; x < n; ++x) {
+                if (is_rim(x, y, chart_of)) {
+                    mark_narrow(x, y, chart_of, narrow);
+                }
+            }
+        }
+        map_.faults.narrow_texels = static_cast<std::uint64_t>(std::ranges::count(narrow, true));
+    }
+
+    /// Whether a chart covers this texel, and not all beside it.
+    [[nodiscard]] bool is_rim(int x, int y, std::span<const std::uint32_t> chart_of) const {
+        const std::size_t here = texel_at(x, y);
+        const auto covers = [&](std::size_t i) {
+            return map_.texels[i].owner != 0.0F && chart_of[i] == chart_of[here];
+        };
+        return covers(here) && !(covers(texel_at(x - 1, y)) && covers(texel_at(x + 1, y)) &&
+                                 covers(texel_at(x, y - 1)) && covers(texel_at(x, y + 1)));
+    }
+
+    /// Around a texel at the rim of a chart.
+    void mark_narrow(int x, int y, std::span<const std::uint32_t> chart_of, std::vector<bool>& narrow) const {
+        const std::uint32_t own = chart_of[texel_at(x, y)];
+        const int last = map_.size - 1;
+        for (int v = std::max(y - least_gutter, 0); v <= std::min(y + least_gutter, last); ++v) {
+            for (int u = std::max(x - least_gutter, 0); u <= std::min(x + least_gutter, last); ++u) {
+                const std::size_t i = texel_at(u, v);
+                const bool near = (u - x) * (u - x) + (v - y) * (v - y) <= least_gutter * least_gutter;
+                if (near && chart_of[i] != none && chart_of[i] != own) {
+                    narrow[i] = true;
+                }
+            }
+        }
+    }
+
     /// Offers the border at a half-edge to the texels near it.
     void surround(std::uint32_t half_edge, bool repeats) {
         const glm::dvec2 a = at(half_edge);
@@ -240,6 +314,13 @@ class MapMaker {
 
 }  // namespace
 
+TexelSurface texel_surface(const SurfaceMesh& mesh) {
+    return {.positions = mesh.file_positions(),
+            .uvs = mesh.data().uvs,
+            .indices = mesh.data().indices,
+            .place = mesh.places()};
+}
+
 TexelMap make_texel_map(const TexelSurface& surface, int size, const Progress& progress) {
     return MapMaker(surface, size).make(progress);
 }
@@ -251,11 +332,8 @@ std::shared_ptr<const TexelMap> shared_texel_map(Assets& assets, const SurfaceMe
         auto map = std::make_shared<TexelMap>();
         const io::DiskCache& cache = assets.disk_cache();
         if (!read_map(cache, key, size, *map)) {
-            *map = make_texel_map({.positions = mesh.file_positions(),
-                                   .uvs = mesh.data().uvs,
-                                   .indices = mesh.data().indices,
-                                   .place = mesh.places()},
-                                  size, assets.progress("finding the texels of " + where));
+            *map =
+                make_texel_map(texel_surface(mesh), size, assets.progress("finding the texels of " + where));
             cache.store(cached_kind, key,
                         io::Packer().add(map->faults).add(map->size).add(map->texels).bytes());
         }

@@ -19,6 +19,8 @@ namespace viscera::tissue {
 
 /// Texels around each chart that name where the surface goes on.
 inline constexpr int gutter_texels = 5;
+/// What reads across seams counts on so many.
+inline constexpr int least_gutter = 4;
 
 /// Which point of a surface a texel stands for, as the bake's shader reads it from an RGBA32F texture: on a
 /// triangle, at the weights (1 - b1 - b2, b1, b2) of its corners.
@@ -38,6 +40,7 @@ struct TexelMapFaults {
     std::uint64_t huge_triangles = 0;      ///< that span more than 4 textures, left out
     std::uint64_t non_manifold_edges = 0;  ///< where seams end, since more than two triangles meet
     std::uint64_t mirrored_triangles = 0;  ///< clockwise in the texture; harmless
+    std::uint64_t narrow_texels = 0;       ///< within least_gutter texels of two charts
 };
 
 struct TexelMap {
@@ -53,6 +56,9 @@ struct TexelSurface {
     std::span<const std::uint32_t> indices;
     std::span<const std::uint32_t> place;  ///< per vertex the vertex that stands for its place
 };
+
+/// Of a mesh, in the file's shape.
+[[nodiscard]] TexelSurface texel_surface(const SurfaceMesh& mesh);
 
 /// Every texel whose centre lies in a triangle, and gutter_texels around each chart, unless they lie in
 /// another one. Texture coordinates beyond [0, 1] repeat. Triangle numbers must be below 2^24. Throws

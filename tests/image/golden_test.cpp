@@ -23,8 +23,10 @@ TEST_P(Golden, EveryTargetIsAsStored) {
     EXPECT_TRUE(findings.empty()) << "first deviates " << to_string(findings.front()) << "\n("
                                   << findings.size() << " in all)";
     for (const std::string& complaint : stage.complaints()) {
-        // The coronaries' catheter lies upstream of the injection.
-        EXPECT_NE(complaint.find("no contrast"), std::string::npos) << complaint;
+        // The coronaries' catheter lies upstream of the injection; bakes are small.
+        const bool known = complaint.find("no contrast") != std::string::npos ||
+                           complaint.find("gutters are narrower") != std::string::npos;
+        EXPECT_TRUE(known) << complaint;
     }
 }
 

@@ -49,6 +49,7 @@ TEST_F(TissueBakes, TexturesOfAnyOrientation) {
     EXPECT_NEAR(plain.at("tissue.position").at(16, 16, 0), mirrored.at("tissue.position").at(15, 16, 0),
                 1e-5);
     EXPECT_EQ(renderer().log().faults().size(), 0U) << said();
+    EXPECT_NE(said().find("2 of 2 triangles are mirrored in the texture"), std::string::npos) << said();
 }
 
 TEST_F(TissueBakes, ATriangleWithoutAreaInTheTexture) {
@@ -122,6 +123,8 @@ TEST_F(TissueBakes, AHostThatFoldsTheSurfaceToNothing) {
         const Pictures pictures = render(frame);
         EXPECT_NEAR(share(pictures, 1.0F), 0.36, 0.05) << "texels stand for what they stood for";
     }
+    expect_said_once("tissue.collapsed", "2 triangles have no area where the host has moved them");
+    EXPECT_EQ(renderer().log().faults().at("tissue.collapsed"), 6U) << "two for each shape but the third";
     values.set("moved", std::vector<float>(12, std::nanf("")));
     EXPECT_EQ(render(frame).at("tissue.position").at(16, 16, 3), 1.0F);
     expect_said_once("surface.host_position_not_finite", "not all finite");

@@ -181,6 +181,43 @@ TEST_F(TissueTools, ABakeOfAnotherMesh) {
     expect_said_once("tissue.other_mesh", "of another mesh or atlas");
 }
 
+/// The same mesh, but placed or moved by the bake alone: contacts are looked for where it is not.
+TEST_F(TissueTools, ABakeOfTheMeshInAnotherPlace) {
+    const json mesh{{"file", Plane().write("stress").string()}};
+    for (const json& other :
+         {json{{"placement", {{"move_mm", {5, 0, 0}}}}}, json{{"host_positions", "moved"}}}) {
+        for (const bool both : {true, false}) {
+            json scene{{"version", 1}, {"resolution", {16, 16}}, {"outputs", {"tissue.energy"}}};
+            json moved = mesh;
+            moved.update(other);
+            scene["passes"] = passes(both ? moved : mesh);
+            scene["passes"][0]["parameters"]["mesh"] = moved;
+            const auto before = renderer().log().faults()["tissue.other_place"];
+            load(scene);
+            time_s_ = 0.0;
+            hold({}, {});
+            (void)hold({7}, tool_at(20, 20, 0), {20, 20, 0, 2, 5, 0});
+            EXPECT_EQ(renderer().log().faults()["tissue.other_place"] == before, both) << other;
+        }
+    }
+    expect_said_once("tissue.other_place", "than the bake that it reads");
+    EXPECT_FALSE(renderer().log().faults().contains("tissue.other_mesh")) << said();
+}
+
+TEST_F(TissueTools, ABakeThatIsMovedAlone) {
+    json scene{{"version", 1}, {"resolution", {16, 16}}, {"outputs", {"tissue.energy"}}};
+    scene["passes"] = passes({{"file", Plane().write("stress").string()}});
+    load(scene);
+    time_s_ = 0.0;
+    (void)hold({}, {}, {20, 20, 0, 2, 5, 0});
+    (void)hold({}, {}, {20, 20, 0, 2, 5, 0});
+    EXPECT_FALSE(renderer().log().faults().contains("tissue.other_place")) << said();
+    renderer().set_parameter("bake", "/mesh/placement/move_mm", {0, 3, 0});
+    (void)hold({}, {}, {20, 20, 0, 2, 5, 0});  // may begin anew, and a first frame has no time
+    (void)hold({}, {}, {20, 20, 0, 2, 5, 0});
+    expect_said_once("tissue.other_place", "tissue.coagulate has another");
+}
+
 /// Also when the bake alone is given another mesh, while the passes that paint stay as they are.
 TEST_F(TissueTools, ABakeThatBecomesThatOfAnotherMesh) {
     json scene{{"version", 1}, {"resolution", {16, 16}}, {"outputs", {"tissue.energy"}}};

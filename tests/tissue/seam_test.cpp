@@ -3,8 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
+#include <string>
+#include <vector>
 
+#include "effects/tissue/texel_map.h"
+#include "engine/core/log.h"
 #include "engine/io/mesh.h"
+#include "engine/runtime/assets.h"
+#include "engine/runtime/surface_mesh.h"
 #include "tests/tissue/bake_stage.h"
 
 // Where the surface goes on beyond the borders of charts.
@@ -265,6 +272,110 @@ TEST(TissueSeam, MirroredTextureHalvesMeetAtTheirFold) {
     for (int i = 0; i < baked.width * baked.height; ++i) {
         ASSERT_TRUE(std::isfinite(folded.metric.at(i % 64, i / 64, 3)));
     }
+}
+
+/// By triangle a vertex that stands for its chart: an atlas repeats those that charts share.
+std::vector<std::uint32_t> charts_of(const MeshData& mesh) {
+    std::vector<std::uint32_t> chart(mesh.positions.size());
+    std::iota(chart.begin(), chart.end(), 0U);
+    const auto find = [&](std::uint32_t v) {
+        while (chart[v] != v) {
+            v = chart[v] = chart[chart[v]];
+        }
+        return v;
+    };
+    for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
+        chart[find(mesh.indices[i])] = find(mesh.indices[i / 3 * 3]);
+    }
+    std::vector<std::uint32_t> of_triangle;
+    for (std::size_t t = 0; t < mesh.indices.size(); t += 3) {
+        of_triangle.push_back(find(mesh.indices[t]));
+    }
+    return of_triangle;
+}
+
+/// Texels within 4 texels of one that a chart covers which do not belong to that chart.
+int missing_gutter(const tissue::TexelMap& map, const MeshData& mesh) {
+    const std::vector<std::uint32_t> charts = charts_of(mesh);
+    const auto chart_at = [&](int x, int y) {
+        const float owner = map.texels[static_cast<std::size_t>(y * map.size + x)].owner;
+        return owner == 0.0F ? -1 : static_cast<int>(charts[static_cast<std::size_t>(std::abs(owner)) - 1]);
+    };
+    int missing = 0;
+    for (int y = 0; y < map.size; ++y) {
+        for (int x = 0; x < map.size; ++x) {
+            if (map.texels[static_cast<std::size_t>(y * map.size + x)].owner <= 0.0F) {
+                continue;
+            }
+            for (int v = std::max(y - 4, 0); v <= std::min(y + 4, map.size - 1); ++v) {
+                for (int u = std::max(x - 4, 0); u <= std::min(x + 4, map.size - 1); ++u) {
+                    const bool near = (u - x) * (u - x) + (v - y) * (v - y) <= 16;
+                    missing += near && chart_at(u, v) != chart_at(x, y) ? 1 : 0;
+                }
+            }
+        }
+    }
+    return missing;
+}
+
+/// Two sheets, each with all of the texture for itself.
+std::string overlapping_sheets() {
+    std::string obj;
+    for (const int part : {0, 1}) {
+        obj += "o part" + std::to_string(part) + "\n";
+        const int first = 4 * part;
+        for (const glm::ivec2& p :
+             {glm::ivec2(0, 0), glm::ivec2(10, 0), glm::ivec2(10, 10), glm::ivec2(0, 10)}) {
+            obj += "v " + std::to_string(p.x) + " " + std::to_string(p.y) + " " + std::to_string(20 * part) +
+                   "\n";
+            obj += "vt " + std::to_string(p.x / 10) + " " + std::to_string(p.y / 10) + "\n";
+        }
+        for (const glm::ivec3& c : {glm::ivec3(1, 2, 3), glm::ivec3(1, 3, 4)}) {
+            obj += "f";
+            for (int k = 0; k < 3; ++k) {
+                const std::string i = std::to_string(first + c[k]);
+                obj += " " + i + "/" + i;
+            }
+            obj += "\n";
+        }
+    }
+    return obj;
+}
+
+TEST(TissueSeam, GuttersOfMadeAtlasesAreFourTexelsWideFrom512On) {
+    std::string said;
+    Log log([&](LogLevel, std::string_view message) { said += std::string(message) + "\n"; });
+    Assets assets(log);
+    const TempFolder folder;
+    SurfaceMeshParams generated;
+    generated.file.path = std::string(VISCERA_SOURCE_DIR) + "/assets/meshes/organ.glb";
+    generated.atlas = AtlasSource::generated;
+    SurfaceMeshParams tiled;
+    tiled.file.path = folder.write("tiled.obj", overlapping_sheets());
+    for (const SurfaceMeshParams& params : {generated, tiled}) {
+        const auto mesh = SurfaceMesh::load(assets, params);
+        for (const int size : {512, 128}) {
+            const tissue::TexelMap map = tissue::make_texel_map(tissue::texel_surface(*mesh), size);
+            const int missing = missing_gutter(map, mesh->data());
+            EXPECT_EQ(missing == 0, size == 512) << params.file.path << ": " << missing;
+            EXPECT_EQ(map.faults.narrow_texels == 0, size == 512) << params.file.path;
+        }
+    }
+    EXPECT_NE(said.find("each gets a tile of its own"), std::string::npos) << said;
+}
+
+TEST(TissueSeam, GuttersThatAreTooNarrowAreSaid) {
+    BakeStage stage;
+    stage.parameters["mesh"] = {{"file", std::string(VISCERA_SOURCE_DIR) + "/assets/meshes/organ.glb"},
+                                {"atlas", "generated"}};
+    stage.parameters["size"] = 128;
+    (void)stage.bake();
+    EXPECT_TRUE(stage.has_said("narrower than that at a 'size' of 128"));
+    const auto faults = stage.renderer().log().faults();
+    ASSERT_TRUE(faults.contains("tissue.gutter"));
+    stage.parameters["size"] = 512;
+    (void)stage.bake();
+    EXPECT_EQ(stage.renderer().log().faults().at("tissue.gutter"), faults.at("tissue.gutter"));
 }
 
 }  // namespace
