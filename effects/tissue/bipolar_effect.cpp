@@ -123,12 +123,14 @@ std::vector<Port> BipolarEffect::ports() const {
 }
 
 void BipolarEffect::find_surface(Prepare& prepare) {
-    if (parameters_key_ != prepare.parameters_key()) {
+    const int size = prepare.size("energy").x;
+    if (!surface_ || surface_->size() != size || parameters_key_ != prepare.parameters_key()) {
         parameters_key_ = prepare.parameters_key();
-        surface_ = BakedSurface::load(prepare.assets(), params_.mesh, prepare.size("energy").x);
+        surface_ = BakedSurface::load(prepare.assets(), params_.mesh, size);
         map_ = surface_->map(prepare.assets());
         const SurfaceMesh& mesh = surface_->mesh();
-        triangles_ = std::make_unique<HeldTriangles>(mesh.data(), mesh.places(), params_.max_uv_perimeter);
+        triangles_ = std::make_unique<HeldTriangles>(texel_surface(mesh), mesh.merged_vertex_count(),
+                                                     params_.max_uv_perimeter);
     }
     surface_->check_bake(prepare, "tissue.coagulate_bipolar");
     surface_->move(prepare);

@@ -1,23 +1,19 @@
 #include "effects/tissue/held_triangles.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <tuple>
 
 namespace viscera::tissue {
 namespace {
 
-// A triangle that is so much larger in the texture than others of its size on the surface may lie between
+// A triangle that is so much longer and more stretched in the texture than its neighbours may lie between
 // charts; whether it does is then looked at.
-constexpr float suspicious_stretch = 4.0F;
-
-template <class Point>
-float perimeter(std::span<const Point> points, std::span<const std::uint32_t> corner) {
-    return glm::distance(points[corner[0]], points[corner[1]]) +
-           glm::distance(points[corner[1]], points[corner[2]]) +
-           glm::distance(points[corner[2]], points[corner[0]]);
-}
+constexpr float suspicious = 2.0F;
 
 /// Vertices that belong together, as a forest.
 class Groups {
@@ -35,70 +31,118 @@ class Groups {
     std::vector<std::uint32_t> parent_;
 };
 
-std::vector<float> find_uv_perimeters(const MeshData& mesh) {
-    std::vector<float> perimeters(mesh.triangle_count());
+/// Per vertex the one that stands for all at its place with its texture coordinates, whatever their normals.
+std::vector<std::uint32_t> find_corners(const TexelSurface& surface) {
+    const auto key = [&](std::uint32_t v) {
+        const glm::vec2 uv = surface.uvs[v] + 0.0F;  // no -0
+        return std::tuple(surface.place[v], std::bit_cast<std::uint32_t>(uv.x),
+                          std::bit_cast<std::uint32_t>(uv.y));
+    };
+    std::vector<std::uint32_t> order(surface.uvs.size());
+    std::iota(order.begin(), order.end(), 0U);
+    std::ranges::sort(order, {}, key);
+    std::vector<std::uint32_t> corner(order.size());
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        const bool same = i > 0 && key(order[i]) == key(order[i - 1]);
+        corner[order[i]] = same ? corner[order[i - 1]] : order[i];
+    }
+    return corner;
+}
+
+/// How a triangle, or the least of several, lies in the texture.
+struct Lie {
+    float length = std::numeric_limits<float>::infinity();   ///< of its longest edge there
+    float stretch = std::numeric_limits<float>::infinity();  ///< the most by which an edge is longer there
+};
+
+struct Edges {
+    Lie lie{0.0F, 0.0F};
+    float perimeter = 0.0F;
+};
+
+Edges edges_of(const TexelSurface& surface, std::size_t t) {
+    Edges edges;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t a = surface.indices[3 * t + k];
+        const std::uint32_t b = surface.indices[3 * t + (k + 1) % 3];
+        const float uv = glm::distance(surface.uvs[a], surface.uvs[b]);
+        const float length = glm::distance(surface.positions[a], surface.positions[b]);
+        edges.perimeter += uv;
+        edges.lie.length = std::max(edges.lie.length, uv);
+        if (uv > 0.0F) {
+            edges.lie.stretch = std::max(edges.lie.stretch, uv / length);
+        }
+    }
+    return edges;
+}
+
+std::vector<float> find_uv_perimeters(const TexelSurface& surface) {
+    std::vector<float> perimeters(surface.indices.size() / 3);
     for (std::size_t t = 0; t < perimeters.size(); ++t) {
-        perimeters[t] =
-            perimeter(std::span<const glm::vec2>(mesh.uvs), std::span(mesh.indices).subspan(3 * t, 3));
+        perimeters[t] = edges_of(surface, t).perimeter;
     }
     return perimeters;
 }
 
-/// Triangles that are too long in the texture, or join what else hangs apart there.
-std::vector<char> find_connecting(const MeshData& mesh, std::span<const float> uv_perimeter,
-                                  double max_uv_perimeter) {
-    const std::size_t count = mesh.triangle_count();
-    const auto corners = [&](std::size_t t) { return std::span(mesh.indices).subspan(3 * t, 3); };
+}  // namespace
+
+std::vector<char> find_connecting(const TexelSurface& surface, double max_uv_perimeter) {
+    const std::size_t count = surface.indices.size() / 3;
+    const std::vector<std::uint32_t> corner_of = find_corners(surface);
+    const auto corners = [&](std::size_t t) {
+        return std::array{corner_of[surface.indices[3 * t]], corner_of[surface.indices[3 * t + 1]],
+                          corner_of[surface.indices[3 * t + 2]]};
+    };
     std::vector<char> connecting(count, 0);
-    std::vector<float> stretch(count, 0.0F);
+    std::vector<Lie> least(surface.uvs.size());
     for (std::size_t t = 0; t < count; ++t) {
-        const float uv = uv_perimeter[t];
-        const float mm = perimeter(std::span<const glm::vec3>(mesh.positions), corners(t));
-        connecting[t] = static_cast<double>(uv) <= max_uv_perimeter ? 0 : 1;  // NaN connects
-        stretch[t] = mm > 0.0F ? uv / mm : 1e30F;
+        const Edges edges = edges_of(surface, t);
+        connecting[t] = static_cast<double>(edges.perimeter) <= max_uv_perimeter ? 0 : 1;  // NaN connects
+        for (const std::uint32_t v : corners(t)) {
+            least[v].length = std::min(least[v].length, edges.lie.length);
+            least[v].stretch = std::min(least[v].stretch, edges.lie.stretch);
+        }
     }
-    if (count == 0) {
-        return connecting;
-    }
-    std::vector<float> sorted = stretch;
-    const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(count / 2);
-    std::ranges::nth_element(sorted, middle);
-    const float most = suspicious_stretch * *middle;
-    Groups charts(mesh.positions.size());
+    // At each corner the least stretched triangle is none of these, so no corner hangs alone.
+    const auto may_span = [&](std::size_t t) {
+        const Lie lie = edges_of(surface, t).lie;
+        return std::ranges::all_of(corners(t), [&](std::uint32_t v) {
+            return lie.length > suspicious * least[v].length && lie.stretch > suspicious * least[v].stretch;
+        });
+    };
+    Groups charts(surface.uvs.size());
+    std::vector<std::size_t> spanning;
     for (std::size_t t = 0; t < count; ++t) {
-        if (connecting[t] == 0 && stretch[t] <= most) {
+        if (may_span(t)) {
+            spanning.push_back(t);
+        } else if (connecting[t] == 0) {
             charts.join(corners(t)[0], corners(t)[1]);
             charts.join(corners(t)[1], corners(t)[2]);
         }
     }
-    for (std::size_t t = 0; t < count; ++t) {
-        const auto corner = corners(t);
-        if (charts.find(corner[0]) != charts.find(corner[1]) ||
-            charts.find(corner[1]) != charts.find(corner[2])) {
-            // A suspicious triangle that stands alone is a chart of its own, not a bridge.
-            connecting[t] = connecting[t] != 0 || stretch[t] > most ? 1 : 0;
-        }
+    for (const std::size_t t : spanning) {
+        const auto [a, b, c] = corners(t);
+        const bool apart = charts.find(a) != charts.find(b) || charts.find(b) != charts.find(c);
+        connecting[t] = connecting[t] != 0 || apart ? 1 : 0;
     }
     return connecting;
 }
 
-}  // namespace
-
-HeldTriangles::HeldTriangles(const MeshData& mesh, std::span<const std::uint32_t> place,
-                             double max_uv_perimeter)
-    : place_(place.begin(), place.end()),
-      first_(place.size() + 1, 0),
-      triangles_(mesh.indices.size()),
-      uv_perimeter_(find_uv_perimeters(mesh)),
-      connecting_(find_connecting(mesh, uv_perimeter_, max_uv_perimeter)),
-      held_(mesh.triangle_count(), 0) {
-    for (const std::uint32_t v : mesh.indices) {
+HeldTriangles::HeldTriangles(const TexelSurface& surface, std::size_t vertex_count, double max_uv_perimeter)
+    : vertex_count_(vertex_count),
+      place_(surface.place.begin(), surface.place.end()),
+      first_(surface.place.size() + 1, 0),
+      triangles_(surface.indices.size()),
+      uv_perimeter_(find_uv_perimeters(surface)),
+      connecting_(find_connecting(surface, max_uv_perimeter)),
+      held_(surface.indices.size() / 3, 0) {
+    for (const std::uint32_t v : surface.indices) {
         ++first_[place_[v] + 1];
     }
     std::partial_sum(first_.begin(), first_.end(), first_.begin());
     std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
-    for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
-        triangles_[next[place_[mesh.indices[i]]]++] = static_cast<std::uint32_t>(i / 3);
+    for (std::size_t i = 0; i < surface.indices.size(); ++i) {
+        triangles_[next[place_[surface.indices[i]]]++] = static_cast<std::uint32_t>(i / 3);
     }
 }
 
@@ -109,7 +153,7 @@ HoldResult HeldTriangles::hold(std::span<const float> vertices) {
     result.shortest_uv_perimeter = std::numeric_limits<float>::infinity();
     for (const float number : vertices) {
         // Written so that NaN is refused.
-        if (!(number >= 0.0F && number < static_cast<float>(place_.size()) && number == std::floor(number))) {
+        if (!(number >= 0.0F && number < static_cast<float>(vertex_count_) && number == std::floor(number))) {
             ++result.useless;
             continue;
         }

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/core/mesh_data.h"
+#include "effects/tissue/texel_map.h"
 
 namespace viscera::tissue {
 
@@ -15,14 +15,18 @@ struct HoldResult {
     float shortest_uv_perimeter = 0.0F;  ///< of those
 };
 
-/// Which triangles a tool holds by some vertices: all that touch them, but no connecting ones. Those are
-/// triangles that a simulation has put between parts that lie apart in the texture; painting on them would
-/// paint on whatever lies between.
+/// By triangle: 1 where it connects parts that lie apart in the texture, as triangles do that a simulation
+/// has put between them; painting on them would paint on whatever lies between. Such are those with a longer
+/// perimeter in the texture than `max_uv_perimeter`, and those that span charts: each is more than twice
+/// as long in the texture, and twice as stretched, as some triangle at each of its corners, and without them
+/// its corners hang apart. So neither the scale of a chart tells, nor a row of narrower or larger triangles.
+[[nodiscard]] std::vector<char> find_connecting(const TexelSurface& surface, double max_uv_perimeter);
+
+/// Which triangles a tool holds by some vertices: all that touch them, but no connecting ones.
 class HeldTriangles {
   public:
-    /// `place`: per vertex the vertex that stands for its place. `max_uv_perimeter`: longer triangles
-    /// connect.
-    HeldTriangles(const MeshData& mesh, std::span<const std::uint32_t> place, double max_uv_perimeter);
+    /// `vertex_count`: vertices that a host knows by number, the first ones.
+    HeldTriangles(const TexelSurface& surface, std::size_t vertex_count, double max_uv_perimeter);
 
     /// Marks the triangles that touch these vertices, or others at the same places. Allocates nothing.
     HoldResult hold(std::span<const float> vertices);
@@ -34,6 +38,7 @@ class HeldTriangles {
     [[nodiscard]] std::span<const char> connecting() const { return connecting_; }
 
   private:
+    std::size_t vertex_count_;
     std::vector<std::uint32_t> place_;
     std::vector<std::uint32_t> first_;  ///< by place, and the end: into triangles_
     std::vector<std::uint32_t> triangles_;

@@ -1,12 +1,15 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <numeric>
 
 #include "effects/tissue/held_triangles.h"
 #include "engine/core/log.h"
 #include "engine/io/mesh.h"
+#include "tests/tissue/bake_stage.h"
 #include "tests/tissue/energy_stage.h"
 
 namespace viscera::test {
@@ -88,6 +91,39 @@ int inside_or_close(double distance) {
     return std::abs(distance) < 1e-4 ? -1 : (distance < 0.0 ? 1 : 0);
 }
 
+std::vector<std::uint32_t> own_places(const MeshData& mesh) {
+    std::vector<std::uint32_t> place(mesh.positions.size());
+    std::iota(place.begin(), place.end(), 0U);
+    return place;
+}
+
+tissue::TexelSurface texels_of(const MeshData& mesh, std::span<const std::uint32_t> place) {
+    return {.positions = mesh.positions, .uvs = mesh.uvs, .indices = mesh.indices, .place = place};
+}
+
+std::size_t connecting_of(const MeshData& mesh, double max_uv_perimeter = 0.15) {
+    const std::vector<std::uint32_t> place = own_places(mesh);
+    return static_cast<std::size_t>(
+        std::ranges::count(tissue::find_connecting(texels_of(mesh, place), max_uv_perimeter), 1));
+}
+
+/// 8 x 6 squares, whose columns lie in space and in the texture where `x_mm` and `u` say.
+MeshData columns(const std::function<double(int)>& x_mm, const std::function<double(int)>& u) {
+    const auto column = [](double s) { return static_cast<int>(std::lround(8.0 * s)); };
+    return sheet(
+        8, 6, [&](double s, double t) { return glm::dvec3(x_mm(column(s)), 6.0 * t, 0.0); },
+        [&](double s, double t) { return glm::dvec2(u(column(s)), 0.1 + 0.06 * t); });
+}
+
+double even(int i) {
+    return i;
+}
+
+/// Two charts of 4 and 3 columns, and a column of triangles that joins them over a gap in the texture.
+MeshData bridged(double gap) {
+    return columns(even, [=](int i) { return 0.1 + 0.01 * i + (i > 4 ? gap : 0.0); });
+}
+
 TEST(Bipolar, EachShapeBurnsWhatLiesWithinIt) {
     constexpr double angle = 30.0;
     const double c = std::cos(angle * std::numbers::pi / 180.0);
@@ -164,6 +200,80 @@ TEST(Bipolar, GoesAcrossASeamWithItsGutters) {
     });
 }
 
+/// The scene's targets follow the frame's size; so do the map and the tiles that the tool's part is found by.
+TEST(Bipolar, AnotherSizeOfTheTextureIsNoticed) {
+    const nlohmann::json mesh{{"file", fine_plane().write("resized").string()}};
+    const nlohmann::json parameters{{"mesh", mesh}};
+    nlohmann::json scene = scene_of(nullptr, nlohmann::json::array(), {"tissue.energy"}, 64, 64);
+    scene.erase("camera");
+    scene["passes"].push_back(pass("bake", "tissue.bake", parameters));
+    scene["passes"].push_back(pass("coagulate", "tissue.coagulate", parameters));
+    scene["passes"].push_back(pass("bipolar", "tissue.coagulate_bipolar", parameters));
+    scene["passes"][2]["parameters"]["tool"] = {{"size_mm", {4.0, 1.0, 2.0}}};
+    for (const char* target : {"tissue.energy", "tissue.position"}) {
+        scene["targets"][target]["scale"] = 1.0;
+    }
+    Image resized;
+    for (const bool small_first : {true, false}) {
+        Stage stage;
+        stage.load(scene);
+        HostValues values;
+        values.set("tissue.held", vertices_near(20, 20, 6));
+        values.set("tissue.tool", pose(20.0, 20.0, 0.0));
+        for (const int size : {small_first ? 64 : 128, 128}) {
+            Frame frame = stage.renderer().still(0.0);
+            frame.width = frame.height = size;
+            frame.values = &values;
+            stage.renderer().render(frame);
+        }
+        const Image energy = stage.renderer().read("tissue.energy");
+        ASSERT_EQ(energy.width, 128);
+        if (small_first) {
+            resized = energy;
+        } else {
+            EXPECT_TRUE(resized.data == energy.data);
+        }
+    }
+}
+
+/// Which triangles connect hangs on the file's shape, not on where a host has them when parameters change.
+TEST(Bipolar, AMovedBridgeIsStillABridge) {
+    BakeStage writer;
+    writer.use(bridged(0.03));
+    const std::string file = writer.parameters["mesh"]["file"];
+    const nlohmann::json parameters{{"mesh", {{"file", file}, {"host_positions", "moved"}}}, {"size", 512}};
+    nlohmann::json scene = scene_of(nullptr, nlohmann::json::array(), {"tissue.energy"}, 32, 32);
+    scene.erase("camera");
+    scene["passes"].push_back(pass("bake", "tissue.bake", parameters));
+    scene["passes"].push_back(pass("coagulate", "tissue.coagulate", parameters));
+    scene["passes"].push_back(pass("bipolar", "tissue.coagulate_bipolar", parameters));
+    scene["passes"][2]["parameters"]["tool"] = {{"shape", "sphere"}, {"size_mm", {1.0, 1.0, 1000.0}}};
+    Stage stage;
+    stage.load(scene);
+    Log log;
+    const MeshData mesh = io::load_meshes(file, {}, log).front();
+    std::vector<float> moved;
+    std::vector<float> held;
+    for (const glm::vec3& p : mesh.positions) {
+        held.push_back(static_cast<float>(held.size()));
+        // The gap opens, as wide as in the texture.
+        moved.insert(moved.end(), {p.x > 4.5F ? p.x + 3.0F : p.x, p.y, p.z});
+    }
+    HostValues values;
+    values.set("moved", moved);
+    values.set("tissue.held", held);
+    stage.render(0.0, &values);
+    stage.renderer().set_parameter("bipolar", "/energy", 0.5);
+    stage.render(0.1, &values);
+    const Image energy = stage.renderer().read("tissue.energy");
+    const auto at = [&](double u) {
+        return energy.at(static_cast<int>(512 * u), static_cast<int>(512 * 0.13), 0);
+    };
+    EXPECT_GT(at(0.12), 0.0F);
+    EXPECT_GT(at(0.20), 0.0F);
+    EXPECT_EQ(at(0.16), 0.0F) << "between the charts";
+}
+
 TEST(Bipolar, BadInputIsSaidAndHarmless) {
     BipolarStage stage(nlohmann::json{{"size_mm", {4.0, 1.0, 2.0}}});
     const float nan = std::nanf("");
@@ -198,6 +308,60 @@ TEST(Bipolar, HoldingACoarseMeshSaysWhichParameterKeepsItFromBurning) {
     EXPECT_EQ(faults.at("tissue.held_connect"), 12U) << "six triangles in two frames";
 }
 
+TEST(HeldTriangles, ABridgeIsFoundHoweverNearTheChartsLie) {
+    // 2.7 times the others' perimeter for its size.
+    const MeshData mesh = bridged(0.03);
+    const std::vector<std::uint32_t> place = own_places(mesh);
+    const std::vector<char> connecting = tissue::find_connecting(texels_of(mesh, place), 0.15);
+    for (std::size_t t = 0; t < connecting.size(); ++t) {
+        EXPECT_EQ(connecting[t] != 0, t / 2 % 8 == 4) << t;
+    }
+    // Also when no two triangles share a vertex, as where each has its own normal.
+    MeshData apart;
+    std::vector<std::uint32_t> places;
+    for (const std::uint32_t v : mesh.indices) {
+        apart.indices.push_back(static_cast<std::uint32_t>(apart.indices.size()));
+        apart.positions.push_back(mesh.positions[v]);
+        apart.uvs.push_back(mesh.uvs[v]);
+        places.push_back(v);
+    }
+    EXPECT_EQ(tissue::find_connecting(texels_of(apart, places), 0.15), connecting);
+}
+
+TEST(HeldTriangles, ChartsOfAnyScaleAreHeld) {
+    // An organ whose texture is 6 times as dense as that of a larger one beside it.
+    const MeshData large = columns(even, [](int i) { return 0.5 + 0.01 * i; });
+    MeshData small = columns(even, [](int i) { return 0.1 + 0.01 * i; });
+    for (glm::vec3& p : small.positions) {
+        p = p / 6.0F + glm::vec3(50.0F, 0.0F, 0.0F);
+    }
+    EXPECT_EQ(connecting_of(together(together(large, large), small)), 0U);
+    EXPECT_EQ(connecting_of(together(large, bridged(0.03))), 12U) << "the bridge alone";
+}
+
+TEST(HeldTriangles, NarrowLargeAndDenseTrianglesOfAChartAreHeld) {
+    EXPECT_EQ(connecting_of(
+                  columns([](int i) { return i > 4 ? i - 0.9 : i; }, [](int i) { return 0.1 + 0.01 * i; })),
+              0U)
+        << "a narrow row that has as much texture as others";
+    EXPECT_EQ(connecting_of(columns([](int i) { return i > 4 ? i + 3.0 : i; },
+                                    [](int i) { return 0.1 + 0.01 * i + (i > 4 ? 0.03 : 0.0); })),
+              0U)
+        << "a row of large triangles";
+    EXPECT_EQ(connecting_of(columns(even, [](int i) { return 0.1 + (i > 4 ? 0.04 * i - 0.12 : 0.01 * i); })),
+              0U)
+        << "half of the chart with 4 times the texture";
+}
+
+TEST(HeldTriangles, NumbersBeyondTheHostsVerticesAreNone) {
+    // The last vertices repeat others, as an atlas has them.
+    const MeshData mesh = bridged(0.03);
+    const std::vector<std::uint32_t> place = own_places(mesh);
+    tissue::HeldTriangles triangles(texels_of(mesh, place), 60, 0.15);
+    EXPECT_EQ(triangles.hold(std::vector<float>{59, 60, 62, 63}).useless, 3U);
+    EXPECT_GT(triangles.count(), 0U);
+}
+
 TEST(HeldTriangles, ConnectingTrianglesAreNotHeld) {
     // Two charts, each a strip of squares, far apart in the texture, and a triangle that joins them; and one
     // that is merely long.
@@ -221,9 +385,8 @@ TEST(HeldTriangles, ConnectingTrianglesAreNotHeld) {
     mesh.uvs.emplace_back(0.9F, 0.9F);
     const std::uint32_t distant = bridge + 1;
     mesh.indices.insert(mesh.indices.end(), {0, 2, 28});
-    std::vector<std::uint32_t> place(mesh.positions.size());
-    std::iota(place.begin(), place.end(), 0U);
-    tissue::HeldTriangles triangles(mesh, place, 0.15);
+    const std::vector<std::uint32_t> place = own_places(mesh);
+    tissue::HeldTriangles triangles(texels_of(mesh, place), mesh.positions.size(), 0.15);
     for (std::uint32_t t = 0; t < mesh.triangle_count(); ++t) {
         EXPECT_EQ(triangles.connecting()[t] != 0, t == bridge || t == distant) << t;
     }
