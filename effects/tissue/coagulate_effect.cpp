@@ -44,6 +44,11 @@ std::span<const std::string_view> choice_names(Metric) {
     return metric_names;
 }
 
+glm::vec4 packed_tile(int x, int y, std::uint32_t begin, std::uint32_t end) {
+    static_assert(8192 / TileTree::tile_texels <= 1024, "the largest size has fewer tiles in a row");
+    return {x + 1024 * y, begin >> 12U, begin & 4095U, end - begin};
+}
+
 void LimitParams::visit(ParamVisitor& v) {
     v.field({.name = "point_mm", .doc = "Its centre (u, v, 0 with metric uv).", .unit = "mm"}, point_mm);
     v.field({.name = "radius_mm", .doc = "Its radius.", .unit = "mm", .min = 0.0}, radius_mm);
@@ -148,18 +153,40 @@ TileTree* CoagulateEffect::find_tiles(Prepare& prepare) {
 void CoagulateEffect::find_limit(const HostValues* values, Log& log) {
     limit_ = {0.0F, 0.0F, 0.0F, static_cast<float>(no_limit * no_limit)};
     const HostValues::Entry* given = values == nullptr ? nullptr : values->find("tissue.limit_to");
-    if (given != nullptr && given->values.size() != 4) {
+    const auto is_finite = [](float value) { return std::isfinite(value); };
+    if (given != nullptr && !(given->values.size() == 4 && std::ranges::all_of(given->values, is_finite) &&
+                              given->values[3] >= 0.0F)) {
         log.fault("tissue.limit_to",
-                  "host values 'tissue.limit_to' must be 4 numbers, a place and a radius; they are left out");
+                  "host values 'tissue.limit_to' must be 4 finite numbers, a place and a radius that is not "
+                  "negative; they are left out");
         given = nullptr;
     }
     if (given != nullptr) {
         const std::vector<float>& f = given->values;
-        // Nothing lies within a radius below 0.
-        limit_ = {f[0], f[1], f[2], f[3] * std::abs(f[3])};
+        limit_ = {f[0], f[1], f[2], f[3] * f[3]};
     } else if (params_.limit_to) {
         limit_ = glm::vec4(glm::vec3(params_.limit_to->point_mm),
                            static_cast<float>(params_.limit_to->radius_mm * params_.limit_to->radius_mm));
+    }
+}
+
+void CoagulateEffect::say_unusable(Log& log) const {
+    if (contacts_.unusable() > 0) {
+        log.fault(
+            "tissue.contact",
+            "contacts that are not finite, of no width, of an unknown action, or beyond 60,000 are left "
+            "out",
+            contacts_.unusable());
+    }
+    if (contacts_.unusable_places() > 0) {
+        log.fault("tissue.contacts_from",
+                  "host values 'tissue.contacts_from' must be 3 finite numbers for each of "
+                  "'tissue.contacts'; all are left out if there are more or fewer, else those that are not "
+                  "finite",
+                  contacts_.unusable_places());
+    }
+    if (contacts_.is_long()) {
+        log.fault("tissue.long_frame", "contacts act over a frame that takes more than 10 s");
     }
 }
 
@@ -197,12 +224,7 @@ Work CoagulateEffect::prepare(Prepare& prepare) {
                        .max_speed = params_.metric == Metric::uv ? 1e30 : params_.max_speed_mm_s,
                        .begin_s = std::max(last_time_s_.value_or(time), goes_on_s_),
                        .end_s = time});
-    if (contacts_.unusable() > 0) {
-        prepare.log().fault(
-            "tissue.contact",
-            "contacts that are not finite, of an unknown action, or beyond 60,000 are left out",
-            contacts_.unusable());
-    }
+    say_unusable(prepare.log());
     find_limit(values_, prepare.log());
     const bool there = params_.metric == Metric::uv || prepare.has("position");
     if (!loads_ && (contacts_.contacts().empty() || !there)) {
@@ -234,10 +256,10 @@ Work CoagulateEffect::prepare(Prepare& prepare) {
         }
         drawn_tiles_.clear();
         const int side = (size + TileTree::tile_texels - 1) / TileTree::tile_texels;
-        const auto count = static_cast<float>(contacts_.contacts().size());
+        const auto count = static_cast<std::uint32_t>(contacts_.contacts().size());
         for (int y = 0; y < side; ++y) {
             for (int x = 0; x < side; ++x) {
-                drawn_tiles_.emplace_back(x, y, 0.0F, count);
+                drawn_tiles_.push_back(packed_tile(x, y, 0, count));
             }
         }
         touched_tiles_ = contacts_.contacts().empty() ? 0 : drawn_tiles_.size();
@@ -310,7 +332,7 @@ void CoagulateEffect::list_tiles(int side, const PixelRegion& region) {
                 const auto tile = pixel_index(x, y, side);
                 const std::uint32_t first = next_[tile];
                 const std::uint32_t end = tile + 1 < next_.size() ? next_[tile + 1] : begin;
-                drawn_tiles_.emplace_back(x, y, first, end - first);
+                drawn_tiles_.push_back(packed_tile(x, y, first, end));
             }
         }
     }

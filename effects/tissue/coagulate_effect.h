@@ -15,6 +15,10 @@ namespace viscera::tissue {
 enum class Metric { world, uv };
 [[nodiscard]] std::span<const std::string_view> choice_names(Metric metric);
 
+/// A tile with its contacts, [begin, end) of their list, as glsl/tissue/coagulate.vert reads it. Where they
+/// begin is in two parts, since a float rounds numbers above 2^24.
+[[nodiscard]] glm::vec4 packed_tile(int x, int y, std::uint32_t begin, std::uint32_t end);
+
 /// A ball outside which nothing changes.
 struct LimitParams {
     glm::dvec3 point_mm{0.0};
@@ -60,6 +64,7 @@ class CoagulateEffect final : public Effect {
     void pack_contacts();
     void draw_tiles(const Pass& pass, std::size_t variant, std::size_t first, std::size_t end);
     void find_limit(const HostValues* values, Log& log);
+    void say_unusable(Log& log) const;
 
     CoagulateParams params_;
     std::vector<ProgramDesc> programs_;
@@ -80,7 +85,7 @@ class CoagulateEffect final : public Effect {
     std::vector<std::uint32_t> pair_tiles_;
     std::vector<std::uint32_t> pair_contacts_;
     std::vector<std::uint32_t> next_;     ///< by tile
-    std::vector<glm::vec4> drawn_tiles_;  ///< as glsl/tissue/coagulate.vert
+    std::vector<glm::vec4> drawn_tiles_;  ///< see packed_tile()
     std::size_t touched_tiles_ = 0;       ///< how many of them, the first ones, contacts reach
     std::vector<glm::vec4> list_;
     std::vector<glm::vec4> packed_;

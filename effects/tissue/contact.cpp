@@ -67,7 +67,11 @@ double contact_reach(double rate, double sigma) {
 void ContactList::add(const Contact& contact, double power, Gain gain) {
     const double seconds = contact.end_s - contact.begin_s;
     // Written so that NaN is left out.
-    if (!(power > 0.0 && seconds > 0.0 && contact.sigma > smallest_sigma)) {
+    if (!(power > 0.0 && seconds > 0.0)) {
+        return;
+    }
+    if (!(contact.sigma > smallest_sigma)) {
+        ++unusable_;
         return;
     }
     const double g =
@@ -99,14 +103,23 @@ void ContactList::add_scene(const ContactParams& params, const Settings& setting
         params.power, settings.gain);
 }
 
+/// Null: the host gives none, or not one for each contact.
+const HostValues::Entry* ContactList::places_before(const HostValues& values, std::size_t contacts) {
+    const HostValues::Entry* given = values.find("tissue.contacts_from");
+    const bool fits =
+        given == nullptr || contacts == 0 || given->values.size() == contacts * floats_per_place;
+    unusable_places_ += fits ? 0 : 1;
+    return fits ? given : nullptr;
+}
+
 void ContactList::add_host(const HostValues& values, const Settings& settings) {
     const HostValues::Entry* given = values.find("tissue.contacts");
     if (given == nullptr) {
         return;
     }
-    const HostValues::Entry* before = values.find("tissue.contacts_from");
     const double seconds = settings.end_s - settings.begin_s;
     const std::size_t count = given->values.size() / floats_per_contact;
+    const HostValues::Entry* before = places_before(values, count);
     unusable_ += given->values.size() % floats_per_contact != 0 ? 1 : 0;
     for (std::size_t i = 0; i < count; ++i) {
         const auto f = std::span(given->values).subspan(i * floats_per_contact, floats_per_contact);
@@ -120,9 +133,10 @@ void ContactList::add_host(const HostValues& values, const Settings& settings) {
         contact.action = *action;
         contact.from = contact.to;
         const double power = action == ContactAction::dissect ? std::abs(f[3]) : f[3];
-        if (before != nullptr && before->values.size() >= (i + 1) * floats_per_place) {
+        if (before != nullptr) {
             const auto b = std::span(before->values).subspan(i * floats_per_place, floats_per_place);
             const glm::dvec3 from(b[0], b[1], b[2]);
+            unusable_places_ += finite(from) ? 0 : 1;
             contact.from = finite(from) ? from : contact.to;
         } else if (i < last_.size() && last_[i].on && last_[i].action == *action &&
                    glm::distance(last_[i].at, contact.to) <= settings.max_speed * seconds) {
@@ -136,6 +150,7 @@ void ContactList::collect(std::span<const ContactParams> scene, const HostValues
                           const Settings& settings) {
     contacts_.clear();
     unusable_ = 0;
+    unusable_places_ = 0;
     for (const ContactParams& params : scene) {
         add_scene(params, settings);
     }
@@ -146,6 +161,8 @@ void ContactList::collect(std::span<const ContactParams> scene, const HostValues
         unusable_ += contacts_.size() - most_contacts;
         contacts_.resize(most_contacts);
     }
+    constexpr double long_s = 10.0;
+    is_long_ = !contacts_.empty() && settings.end_s - settings.begin_s > long_s;
     if (hang_together()) {
         split(settings);
     }

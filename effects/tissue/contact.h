@@ -87,11 +87,17 @@ class ContactList {
 
     /// By step, and within one by action. Sums of several contacts are cut off and their actions hang on each
     /// other from moment to moment: where contacts that move or act differently may reach one place, the
-    /// interval is taken in steps of 1/240 s, so that a long frame does what short ones do.
+    /// interval is taken in steps of 1/240 s, so that a long frame does what short ones do: in 60 steps at
+    /// most, and in no more than keep within most_contacts.
     [[nodiscard]] std::span<const Contact> contacts() const { return contacts_; }
     [[nodiscard]] bool has_steps() const { return !contacts_.empty() && contacts_.back().step > 0; }
-    /// Contacts of the last collect() that were left out: not finite, of an unknown action, or cut off.
+    /// Contacts of the last collect() that were left out: not finite, of no width, of an unknown action, or
+    /// cut off.
     [[nodiscard]] std::uint64_t unusable() const { return unusable_; }
+    /// Places of the frame before that were left out: not finite, or (counted once) not one for each contact.
+    [[nodiscard]] std::uint64_t unusable_places() const { return unusable_places_; }
+    /// Whether contacts act over so long that the times are likely to be in another unit.
+    [[nodiscard]] bool is_long() const { return is_long_; }
 
   private:
     struct Place {
@@ -102,6 +108,7 @@ class ContactList {
     void add_scene(const ContactParams& params, const Settings& settings);
     void add_host(const HostValues& values, const Settings& settings);
     void add(const Contact& contact, double power, Gain gain);
+    [[nodiscard]] const HostValues::Entry* places_before(const HostValues& values, std::size_t contacts);
     [[nodiscard]] bool hang_together() const;
     void split(const Settings& settings);
 
@@ -109,6 +116,8 @@ class ContactList {
     std::vector<Contact> whole_;  ///< before they are split into steps
     std::vector<Place> last_;
     std::uint64_t unusable_ = 0;
+    std::uint64_t unusable_places_ = 0;
+    bool is_long_ = false;
 };
 
 }  // namespace viscera::tissue

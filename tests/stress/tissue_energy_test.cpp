@@ -74,10 +74,37 @@ TEST_F(DegenerateEnergy, PowersWidthsAndTimesOfAnySize) {
             }
         }
     }
+    expect_said_once("tissue.contact", "of no width");
+    expect_said_once("tissue.long_frame", "more than 10 s");
     const Image before = frame(time, {20, 20, 0, 1, 2, 0});
     expect_same(frame(time, {20, 20, 0, 5, 9, 1}), before, "no time, no change");
     EXPECT_GT(largest(frame(1e15, {20, 20, 0, 1, 2, 0})), 100.0F) << "a dose of 30 million years";
     EXPECT_EQ(largest(frame(0.0, {20, 20, 0, 1, 2, 0})), 0.0F) << "back to the beginning";
+}
+
+TEST_F(DegenerateEnergy, PlacesAndLimitsThatAreNone) {
+    load(scene(Plane().write("stress")));
+    frame(0.0, {});
+    double time = 0.0;
+    float most = 0.0F;
+    const auto expect_burnt = [&](const char* what) {
+        const float now = largest(frame(time += 0.01, {20, 20, 0, 1, 2, 0}));
+        EXPECT_GT(now, most) << what;
+        most = now;
+    };
+    for (const std::vector<float>& from :
+         {std::vector<float>{nan_value, 20, 0}, {20, inf_value, 0}, {20, 20}, {20, 20, 0, 20, 20, 0}}) {
+        values_.set("tissue.contacts_from", from);
+        expect_burnt("from");
+    }
+    expect_said_once("tissue.contacts_from", "3 finite numbers");
+    values_.erase("tissue.contacts_from");
+    for (const std::vector<float>& limit :
+         {std::vector<float>{20, 20, 0, nan_value}, {20, 20, 0, -1}, {inf_value, 20, 0, 5}, {20, 20, 0}}) {
+        values_.set("tissue.limit_to", limit);
+        expect_burnt("limit");
+    }
+    expect_said_once("tissue.limit_to", "4 finite numbers");
 }
 
 TEST_F(DegenerateEnergy, TenThousandContacts) {

@@ -127,21 +127,30 @@ TEST(CoagulateSkip, LimitsConfineWhatChanges) {
     stage.values.set("tissue.limit_to", std::vector<float>{20, 20, 0, 5});
     stage.frame(0.5);
     expect_within(5.0);
-    stage.values.set("tissue.limit_to", std::vector<float>{20, 20, 0, std::nanf("")});
-    const Image before = stage.energy();
-    stage.frame(0.75);
-    EXPECT_TRUE(stage.energy().data == before.data) << "a limit that is no number lets nothing through";
-    stage.values.set("tissue.limit_to", std::vector<float>{20, 20, 0, -5});
-    stage.frame(1.0);
-    EXPECT_TRUE(stage.energy().data == before.data) << "nothing lies within a radius below 0";
-    stage.values.set("tissue.limit_to", std::vector<float>{20, 20, 0});
-    stage.frame(1.25);
-    EXPECT_EQ(stage.stage.renderer().log().faults().at("tissue.limit_to"), 1U);
+    // What is no ball is left out: the scene's holds.
+    const std::vector<std::vector<float>> odd{
+        {20, 20, 0, std::nanf("")}, {std::nanf(""), 20, 0, 5}, {20, 20, 0, -5}, {20, 20, 0}};
+    for (std::size_t i = 0; i < odd.size(); ++i) {
+        EnergyStage other(nlohmann::json{{"limit_to", {{"point_mm", {20, 20, 0}}, {"radius_mm", 3.0}}}});
+        other.contacts({{21, 20, 0, 2.0, 4.0}});
+        other.frame(0.0);
+        other.values.set("tissue.limit_to", odd[i]);
+        other.frame(0.25);
+        other.each_texel([&](const glm::dvec3& p, double e) {
+            const double d = glm::distance(p, glm::dvec3(20, 20, 0));
+            if (std::abs(d - 3.0) > 1e-4) {
+                ASSERT_EQ(e > 0.0, d < 3.0) << i << ": " << d;
+            }
+        });
+        EXPECT_EQ(other.stage.renderer().log().faults().at("tissue.limit_to"), 1U) << i;
+        EXPECT_EQ(other.stage.complaints().size(), 1U) << i;
+    }
+    stage.stage.make_current();
 }
 
 /// Frames 0 to 5, saved, loaded by another renderer, and on to 10: as if there had been no pause.
-TEST(CoagulateSkip, ASavedStateGoesOnAsIfNothingHadHappened) {
-    const auto folder = process_folder() / "saved";
+void expect_resumed(const std::string& format, PixelFormat stored) {
+    const auto folder = process_folder() / ("saved_" + format);
     std::filesystem::create_directories(folder);
     const nlohmann::json contacts{{{"from_mm", {10, 12, 0}},
                                    {"to_mm", {30, 25, 0}},
@@ -150,7 +159,7 @@ TEST(CoagulateSkip, ASavedStateGoesOnAsIfNothingHadHappened) {
                                    {"power", 6.0},
                                    {"sigma_mm", 1.7}},
                                   {{"from_mm", {25, 15, 0}}, {"power", 3.0}, {"action", "dissect"}}};
-    EnergyStage through(nlohmann::json{{"contacts", contacts}});
+    EnergyStage through(nlohmann::json{{"contacts", contacts}}, {}, "plane", 128, format);
     const auto render = [](EnergyStage& stage, std::uint64_t index) {
         Frame frame = stage.stage.renderer().frame(index);
         frame.values = &stage.values;
@@ -174,12 +183,22 @@ TEST(CoagulateSkip, ASavedStateGoesOnAsIfNothingHadHappened) {
     const auto file = folder / "0005.tissue.energy.exr";
     ASSERT_TRUE(std::filesystem::exists(file));
 
-    EnergyStage resumed(nlohmann::json{{"contacts", contacts}, {"load", {{"file", file.string()}}}});
+    EnergyStage resumed(nlohmann::json{{"contacts", contacts}, {"load", {{"file", file.string()}}}}, {},
+                        "plane", 128, format);
     for (std::uint64_t i = 6; i <= 10; ++i) {
         render(resumed, i);
     }
+    EXPECT_EQ(expected.format, stored);
     EXPECT_TRUE(resumed.energy().data == expected.data);
-    EXPECT_TRUE(io::read_exr(file).front().image.format == PixelFormat::r32f);
+    EXPECT_TRUE(io::read_exr(file).front().image.format == stored);
+}
+
+TEST(CoagulateSkip, ASavedStateGoesOnAsIfNothingHadHappened) {
+    expect_resumed("r32f", PixelFormat::r32f);
+}
+
+TEST(CoagulateSkip, AHalfFloatStateIsSavedAndLoadedToTheBit) {
+    expect_resumed("r16f", PixelFormat::r16f);
 }
 
 std::filesystem::path saved_file(const std::string& name) {

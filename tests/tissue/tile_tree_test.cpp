@@ -135,6 +135,37 @@ TEST_F(ContactsTest, WhatIsNoContactIsCounted) {
     EXPECT_EQ(list_.contacts()[0].action, ContactAction::dissect) << "as the published code has it";
 }
 
+TEST_F(ContactsTest, WhatHasNoWidthIsCounted) {
+    give({1, 2, 3, 5, 0, 0, 1, 2, 3, 5, -1, 0, 1, 2, 3, 0, 0, 0});
+    EXPECT_TRUE(collect(0.0, 0.1).empty());
+    EXPECT_EQ(list_.unusable(), 2U) << "the third is off";
+    list_.collect(std::vector<tissue::ContactParams>{{.sigma_mm = 0.0}}, nullptr,
+                  {.begin_s = 0.0, .end_s = 0.1});
+    EXPECT_EQ(list_.unusable(), 1U);
+}
+
+TEST_F(ContactsTest, PlacesBeforeThatAreNoneAreCounted) {
+    const float nan = std::nanf("");
+    give({1, 2, 3, 5, 2, 0, 4, 5, 6, 5, 2, 0});
+    values_.set("tissue.contacts_from", std::vector<float>{nan, 2, 3, 4, 5, 5});
+    ASSERT_FALSE(collect(0.0, 0.1).empty());
+    EXPECT_EQ(list_.unusable_places(), 1U);
+    const auto begins_at = [&](const glm::dvec3& place) {
+        return std::ranges::any_of(list_.contacts(), [&](const Contact& c) { return c.from == place; });
+    };
+    EXPECT_TRUE(begins_at({1, 2, 3})) << "where it is";
+    EXPECT_TRUE(begins_at({4, 5, 5}));
+    for (const std::size_t count : {3U, 5U, 9U}) {
+        values_.set("tissue.contacts_from", std::vector<float>(count, 7.0F));
+        collect(0.0, 0.1);
+        EXPECT_EQ(list_.unusable_places(), 1U) << count;
+        EXPECT_TRUE(begins_at({1, 2, 3}) && begins_at({4, 5, 6})) << count << ": all are left out";
+    }
+    give({});
+    collect(0.0, 0.1);
+    EXPECT_EQ(list_.unusable_places(), 0U) << "no contact has come from anywhere";
+}
+
 TEST(ContactReach, IsWhereHalfAUnitInTheLastPlaceIsAdded) {
     for (const double rate : {1e-3, 0.1, 1.0, 50.0, 1e6}) {
         const double reach = tissue::contact_reach(rate, 2.0);
