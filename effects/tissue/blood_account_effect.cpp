@@ -1,5 +1,6 @@
 #include "effects/tissue/blood_account_effect.h"
 
+#include "engine/core/log.h"
 #include "engine/runtime/pass.h"
 
 namespace viscera::tissue {
@@ -37,13 +38,17 @@ Work BloodAccountEffect::prepare(Prepare& prepare) {
     if (!prepare.has("height")) {
         return Work::idle("there is no blood");
     }
+    if (!state_->begun) {
+        prepare.log().fault("tissue.no_blood_of_name",
+                            "no tissue.blood has the state '" + state_name_ + "' that a pass asks for");
+    }
+    if (!state_->there) {
+        return Work::idle("there is no blood of this name");
+    }
     return Work::all(prepare.parameters_key());
 }
 
 void BloodAccountEffect::draw(const Pass& pass) {
-    if (!state_->gpu) {
-        return;  // no pass makes blood of this name
-    }
     const gl::Program& program = pass.use(0);
     pass.bind(program, "u_film", state_->gpu->film(), gl::Filter::nearest);
     pass.bind(program, "u_drops", state_->gpu->drops(), gl::Filter::nearest);

@@ -12,11 +12,8 @@ namespace viscera::tissue {
 namespace {
 
 constexpr int tile_side = 32;  // a multiple of a block's
-// A drop moves two texels in a step at most, and the film that it leaves one: blood_mark.vert.
-constexpr int steps_per_plan = 4;
-// How far across a seam blood goes until then, beyond where it lies or gutters lead.
+// How far across a seam blood goes until the next plan, beyond where it lies or gutters lead.
 constexpr int past_seam = 4;
-constexpr float steps_per_look = 8.0F;  // at most
 // A film that creeps more slowly stands [mm/s].
 constexpr float still_mm_s = 5e-4F;
 constexpr int points_per_drop = 2;  // as blood_mark.vert
@@ -229,7 +226,8 @@ void BloodBlocks::look(const Pass& pass, const BloodMedium& medium, const Blood&
     search.set("u_all", all);
     // A relief pulls no more than gravity down a wall.
     const float steepest = medium.relief_pull > 0.0F ? 2.0F : 1.0F;
-    search.set("u_run", steps_per_look * medium.flow.z * medium.flow.x * medium.strength * steepest);
+    search.set("u_run", static_cast<float>(steps_per_look) * medium.flow.z * medium.flow.x * medium.strength *
+                            steepest);
     draw_into(pass, held_target_[1 - before], gl::overwrite_state);
     pass.draw_fullscreen();
     now_ = 1 - before;

@@ -34,7 +34,12 @@ namespace viscera::tissue {
 class BloodBlocks {
   public:
     static constexpr int block_side = 8;  ///< [texels]; as blood_plan.glsl
-    static constexpr int in_row = 16;     ///< blocks in each of rows(); as blood_ground.glsl
+    /// Between two looks at which tiles are at rest: in as many steps no film leaves the blocks around its
+    /// own.
+    static constexpr int steps_per_look = block_side;
+    /// A drop moves two texels in a step at most, and the film that it leaves one: blood_mark.vert.
+    static constexpr int steps_per_plan = 4;
+    static constexpr int in_row = 16;  ///< blocks in each of rows(); as blood_ground.glsl
 
     /// Film and drops as they are now.
     struct Blood {

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "effects/tissue/baked_surface.h"
 #include "effects/tissue/blood_programs.h"
-#include "effects/tissue/surface_search.h"
 #include "engine/core/error.h"
 #include "engine/core/hash.h"
 #include "engine/core/log.h"
@@ -16,21 +16,10 @@
 namespace viscera::tissue {
 namespace {
 
-// Steps between two looks at which tiles are at rest: in as many steps no film leaves the blocks of 8 texels
-// around its own.
-constexpr std::int64_t steps_per_look = 8;
 // A gap between frames of more than this is not made up for.
 constexpr double longest_gap_s = 0.5;
 constexpr double smallest_drop_share = 0.02;
 constexpr double latest_s = 1.0e9;
-// For as many wounds each triangle is looked at; for more they are put into a tree first.
-constexpr std::size_t few_wounds = 16;
-// Drops of a jet in those of a wound: it is finer.
-constexpr double jet_drop_share = 0.25;
-// Where drops of a jet come down no plan has looked, so that they ask for one: they wait for each other, as
-// many steps as a plan holds for, and no longer than is seen.
-constexpr std::int64_t steps_per_landing = 4;
-constexpr double longest_landing_s = 1.0 / 30.0;
 
 std::int64_t step_at(double time_s, double steps_per_s) {
     // A frame's time that should lie on the grid may miss it by its own rounding.
@@ -143,7 +132,8 @@ Work BloodEffect::prepare(Prepare& prepare) {
     mesh_->move(frame.values, params_.mesh.host_positions, prepare.log());
     check_inputs(prepare);
     surface_key_ = Hash().add(mesh_->shape_key()).add(to_world_).add(flow_.key()).value();
-    collect_wounds(params_, frame.values, prepare.log(), wounds_);
+    bleeding_.collect(params_, frame.values, prepare.log());
+    bleeding_.lie_on(mesh_, to_world_, surface_key_);
     collect_tools(params_, frame.values, prepare.log(), tools_);
 
     BloodState& state = *state_;
@@ -153,18 +143,18 @@ Work BloodEffect::prepare(Prepare& prepare) {
         state.begin_anew(target_step_, rate);
         state.bled = state.moving = prepare.has("spill");
     }
-    const auto gap = std::max(static_cast<std::int64_t>(longest_gap_s * rate), std::int64_t{1});
-    const bool runs = bleeds(std::max(state.step, target_step_ - gap), target_step_);
-    state.jets_bleed = std::ranges::any_of(wounds_, [&](const WoundParams& wound) {
-        return wound.kind == BleedingKind::jet && wound.rate_mm3_s > 0.0 && frame.time_s >= wound.start_s &&
-               frame.time_s < wound.stop_s;
-    });
-    if (!state.bled && !runs) {
+    take_liquid();
+    const double first = static_cast<double>(std::max(state.step, target_step_ - longest_gap())) / rate;
+    const double last = static_cast<double>(target_step_) / rate;
+    const bool runs = bleeding_.bleeds(first, last);
+    state.jets_bleed = bleeding_.sends_jets(first, last);
+    state.there = state.bled || runs;
+    if (!state.there) {
         state.step = target_step_;
         return Work::idle("there is no blood");
     }
-    const bool disturbed = state.moving || runs || working_tools(target_step_) > 0 || state.tool_count > 0 ||
-                           surface_key_ != state.surface_key;
+    const bool disturbed = state.moving || state.woken || runs || tools_work(first, last) ||
+                           state.tool_count > 0 || surface_key_ != state.surface_key;
     if (!disturbed) {
         state.step = target_step_;
     }
@@ -174,56 +164,24 @@ Work BloodEffect::prepare(Prepare& prepare) {
     return disturbed ? Work::go_on(key) : Work::rest("all blood stands still", key);
 }
 
-bool BloodEffect::bleeds(std::int64_t first, std::int64_t last) const {
-    const double from = static_cast<double>(first) / params_.liquid.steps_per_s;
-    const double to = static_cast<double>(last) / params_.liquid.steps_per_s;
-    return last > first && std::ranges::any_of(wounds_, [&](const WoundParams& wound) {
-               return wound.rate_mm3_s > 0.0 && wound.start_s < to && wound.stop_s > from;
+std::int64_t BloodEffect::longest_gap() const {
+    return std::max(static_cast<std::int64_t>(longest_gap_s * params_.liquid.steps_per_s), std::int64_t{1});
+}
+
+/// Blood that rests would not notice that it is another liquid now.
+void BloodEffect::take_liquid() {
+    const std::uint64_t key = params_.liquid.key();
+    // Of two passes that call it differently each is heard once.
+    if (std::exchange(liquid_key_, key) != key && state_->liquid_key != key) {
+        state_->liquid_key = key;
+        state_->woken = state_->bled;
+    }
+}
+
+bool BloodEffect::tools_work(double from_s, double to_s) const {
+    return to_s > from_s && std::ranges::any_of(tools_, [&](const CleanerParams& tool) {
+               return tool.rate > 0.0 && tool.start_s < to_s && tool.stop_s > from_s;
            });
-}
-
-std::size_t BloodEffect::working_tools(std::int64_t step) const {
-    const double time = (static_cast<double>(step) + 0.5) / params_.liquid.steps_per_s;
-    return static_cast<std::size_t>(std::ranges::count_if(tools_, [&](const CleanerParams& tool) {
-        return tool.rate > 0.0 && time >= tool.start_s && time < tool.stop_s;
-    }));
-}
-
-void BloodEffect::find_places() {
-    places_.resize(wounds_.size());
-    const auto is_old = [this](std::size_t i) {
-        return places_[i].position_mm != wounds_[i].position_mm || places_[i].surface_key != surface_key_;
-    };
-    std::size_t old = 0;
-    for (std::size_t i = 0; i < wounds_.size(); ++i) {
-        old += is_old(i) ? 1 : 0;
-    }
-    if (old > few_wounds) {
-        update_tree();
-    }
-    for (std::size_t i = 0; old > 0 && i < wounds_.size(); ++i) {
-        if (!is_old(i)) {
-            continue;
-        }
-        const glm::dvec3& at = wounds_[i].position_mm;
-        places_[i] = {.position_mm = at, .surface_key = surface_key_};
-        const auto nearest =
-            tree_key_ == surface_key_ ? tree_.nearest(at) : nearest_point(mesh_->data(), to_world_, at);
-        if (nearest) {
-            places_[i].found = true;
-            places_[i].uv = glm::vec2(nearest->uv - glm::floor(nearest->uv));
-        }
-    }
-    if (state_->meters.size() < wounds_.size()) {
-        state_->meters.resize(wounds_.size());
-    }
-}
-
-void BloodEffect::update_tree() {
-    if (tree_key_ != surface_key_) {
-        tree_key_ = surface_key_;
-        tree_ = TriangleTree(mesh_->data(), to_world_);
-    }
 }
 
 void BloodEffect::set_medium() {
@@ -270,80 +228,28 @@ void BloodEffect::update_surface(const Pass& pass) {
         state.gpu->find_seams(pass);
     }
     state.gpu->take_surface(pass, medium_, empty);
-    if (state.bled) {
-        state.moving = true;
-        expect_drops();
-        state.gpu->look_at_tiles(pass, medium_, state.ring, true);
-        state.looked_at = state.step;
-        state.steps_since_look = 0;
-        state.disturbed_at = ++state.looks + 1;
-    }
+    state.woken = state.bled;
 }
 
-void BloodEffect::expect_drops() {
-    const double dt = 1.0 / params_.liquid.steps_per_s;
-    const double from = static_cast<double>(state_->step) * dt;
-    const double to = from + static_cast<double>(steps_per_look) * dt;
-    ExpectedDrops& expected = state_->expected;
-    expected.begin(params_.liquid.drop_aspect);
-    for (std::size_t i = 0; i < std::min(places_.size(), wounds_.size()); ++i) {
-        const WoundParams& wound = wounds_[i];
-        if (places_[i].found && wound.kind == BleedingKind::ooze && wound.start_s < to &&
-            wound.stop_s > from) {
-            expected.add(i, places_[i].uv, wound.radius_mm,
-                         DropMeter::drop_volume(wound.rate_mm3_s * dt, params_.liquid.drop_mm3));
-        }
-    }
-    state_->gpu->expect(expected.places());
+void BloodEffect::wake(const Pass& pass) {
+    BloodState& state = *state_;
+    state.woken = false;
+    look(pass, true);
+    state.stir();
 }
 
-void BloodEffect::collect_drops(std::int64_t step) {
-    spawns_.clear();
-    const double dt = 1.0 / params_.liquid.steps_per_s;
-    const double time = (static_cast<double>(step) + 0.5) * dt;
-    for (std::size_t i = 0; i < wounds_.size(); ++i) {
-        const WoundParams& wound = wounds_[i];
-        if (!places_[i].found || time < wound.start_s || time >= wound.stop_s) {
-            continue;
-        }
-        const bool flies = wound.kind == BleedingKind::jet;
-        const auto drops = state_->meters[i].flow(wound.rate_mm3_s * pulse_of(wound, time) * dt,
-                                                  params_.liquid.drop_mm3 * (flies ? jet_drop_share : 1.0));
-        if (flies) {
-            state_->jets.leave(wound, places_[i].uv, drops, pulse_of(wound, time), gravity_mm_s2(), dt);
-            continue;
-        }
-        for (int n = 0; n < drops.count; ++n) {
-            spawns_.push_back(
-                {.uv = places_[i].uv,
-                 .volume_mm3 = static_cast<float>(drops.volume_mm3),
-                 .radius_mm = static_cast<float>(wound.radius_mm),
-                 .expected = state_->expected.covers(i, places_[i].uv, wound.radius_mm, drops.volume_mm3)});
-        }
-    }
-    fly(dt);
-    const auto wait = static_cast<std::int64_t>(longest_landing_s / dt + 1e-6);
-    if (step % std::clamp<std::int64_t>(wait, 1, steps_per_landing) == 0) {
-        spawns_.insert(spawns_.end(), state_->landed.begin(), state_->landed.end());
-        state_->landed.clear();
-    }
-    for (DropSpawn& spawn : spawns_) {
-        spawn.seed = static_cast<float>(state_->seed++ & 0xffffffU);
-    }
+void BloodEffect::look(const Pass& pass, bool wake) {
+    BloodState& state = *state_;
+    bleeding_.expect_drops(state, BloodBlocks::steps_per_look);
+    state.gpu->expect(state.expected.places());
+    state.gpu->look_at_tiles(pass, medium_, state.ring, wake);
+    state.looked_at = state.step;
+    state.steps_since_look = 0;
+    ++state.looks;
 }
 
 glm::dvec3 BloodEffect::gravity_mm_s2() const {
     return flow_.gravity.down * (flow_.gravity.strength * standard_gravity_m_s2 * 1000.0);
-}
-
-void BloodEffect::fly(double dt) {
-    if (state_->jets.particles().empty()) {
-        return;
-    }
-    update_tree();
-    state_->jets.step(tree_, gravity_mm_s2(), dt, state_->landed);
-    state_->bled = state_->moving = true;
-    state_->disturbed_at = state_->looks + 1;
 }
 
 void BloodEffect::spawn(const Pass& pass) {
@@ -360,8 +266,8 @@ void BloodEffect::spawn(const Pass& pass) {
             drops[i].slot = static_cast<float>((head + static_cast<std::int64_t>(i)) % capacity);
         }
         state.gpu->spawn(pass, medium_, drops, evicted);
-        state.bled = state.moving = true;
-        state.disturbed_at = state.looks + 1;
+        state.bled = true;
+        state.stir();
     }
 }
 
@@ -369,21 +275,16 @@ void BloodEffect::run_step(const Pass& pass) {
     BloodState& state = *state_;
     const std::int64_t step = state.step;
     set_tools(step);
-    collect_drops(step);
+    bleeding_.step(state, gravity_mm_s2(), pass.log(), spawns_);
     // Two looks without a step between them would find that nothing has changed.
     // Gaps between frames may leave out steps at which a look is due.
-    const bool due =
-        step != state.looked_at && (step % steps_per_look == 0 || state.steps_since_look >= steps_per_look);
+    const bool due = step != state.looked_at && (step % BloodBlocks::steps_per_look == 0 ||
+                                                 state.steps_since_look >= BloodBlocks::steps_per_look);
     if (due || medium_.tools.size() != state.tool_count) {
-        expect_drops();
-        state.gpu->look_at_tiles(pass, medium_, state.ring, !medium_.tools.empty());
-        state.looked_at = step;
-        state.steps_since_look = 0;
-        ++state.looks;
+        look(pass, !medium_.tools.empty());
     }
     if (!medium_.tools.empty() || state.tool_count != 0) {
-        state.moving = true;
-        state.disturbed_at = state.looks + 1;
+        state.stir();
     }
     state.tool_count = medium_.tools.size();
     spawn(pass);
@@ -402,13 +303,14 @@ void BloodEffect::draw(const Pass& pass) {
     set_medium();
     set_tools(state.step);
     if (target_step_ > state.step) {
-        find_places();
+        bleeding_.find_places(state, pass.log());
     }
     update_surface(pass);
+    if (state.woken) {
+        wake(pass);
+    }
     if (target_step_ > state.step) {
-        const auto gap =
-            std::max(static_cast<std::int64_t>(longest_gap_s * state.steps_per_s), std::int64_t{1});
-        state.step = std::max(state.step, target_step_ - gap);
+        state.step = std::max(state.step, target_step_ - longest_gap());
         while (state.step < target_step_) {
             run_step(pass);
         }
@@ -419,7 +321,9 @@ void BloodEffect::draw(const Pass& pass) {
             state.ring.clear();
         }
         // Only where nothing bleeds: what comes back is a picture in memory.
-        if (state.moving && !bleeds(target_step_ - 1, target_step_) && state.looks >= state.disturbed_at) {
+        const double now = static_cast<double>(target_step_) / state.steps_per_s;
+        if (state.moving && !bleeding_.bleeds(now - 1.0 / state.steps_per_s, now) &&
+            state.looks >= state.disturbed_at) {
             state.gpu->ask_tiles(state.looks);
         }
     }

@@ -4,10 +4,10 @@
 #include <string_view>
 #include <vector>
 
+#include "effects/tissue/bleeding.h"
 #include "effects/tissue/blood_params.h"
 #include "effects/tissue/blood_state.h"
 #include "effects/tissue/gravity.h"
-#include "effects/tissue/surface_search.h"
 #include "engine/runtime/effect.h"
 
 namespace viscera::tissue {
@@ -27,29 +27,22 @@ class BloodEffect final : public Effect {
     void draw(const Pass& pass) override;
 
   private:
-    /// Where a wound lies on the surface.
-    struct Place {
-        glm::dvec3 position_mm{0.0};
-        std::uint64_t surface_key = 0;
-        bool found = false;
-        glm::vec2 uv{0.0F};
-    };
     void check_sizes(const Prepare& prepare) const;
     void check_inputs(Prepare& prepare);
-    void find_places();
-    void update_tree();
     void spawn(const Pass& pass);
-    [[nodiscard]] bool bleeds(std::int64_t first, std::int64_t last) const;
-    [[nodiscard]] std::size_t working_tools(std::int64_t step) const;
+    void take_liquid();
+    /// Steps that a gap between frames may have.
+    [[nodiscard]] std::int64_t longest_gap() const;
+    /// Whether a tool works between two times [s].
+    [[nodiscard]] bool tools_work(double from_s, double to_s) const;
     void set_medium();
     void set_tools(std::int64_t step);
     void update_surface(const Pass& pass);
+    /// Whatever shows blood is stepped again.
+    void wake(const Pass& pass);
+    void look(const Pass& pass, bool wake);
     void run_step(const Pass& pass);
     void show(const Pass& pass);
-    /// Says where drops may appear until the next look.
-    void expect_drops();
-    void collect_drops(std::int64_t step);
-    void fly(double dt);
     [[nodiscard]] glm::dvec3 gravity_mm_s2() const;
 
     BloodParams params_;
@@ -62,12 +55,10 @@ class BloodEffect final : public Effect {
     std::uint64_t surface_key_ = 0;  ///< of the mesh as it lies now
     std::int64_t target_step_ = 0;
     std::uint64_t shown_version_ = 0;  ///< of the blood that this pass drew last
-    std::vector<WoundParams> wounds_;
-    std::vector<Place> places_;
+    std::uint64_t liquid_key_ = 0;
+    Bleeding bleeding_;
     std::vector<CleanerParams> tools_;
     std::vector<DropSpawn> spawns_;
-    TriangleTree tree_;  ///< for jets
-    std::uint64_t tree_key_ = 0;
     BloodMedium medium_;
 };
 

@@ -158,18 +158,20 @@ void BloodGpu::plan(const Pass& pass, const BloodMedium& medium, bool for_step) 
 }
 
 const gl::Program& BloodGpu::use_deposit(const Pass& pass, const BloodMedium& medium, BloodShader shader,
-                                         const gl::Texture& source, const gl::Texture& areas) const {
+                                         const gl::Texture& drops, const gl::Texture& areas) const {
     const gl::Program& program = use(pass, shader);
     blocks_.bind_plan(pass, program);
     bind_place(pass, program, areas);
-    bind(pass, program, "u_deposit", source);
+    bind(pass, program, "u_drops", drops);
     pass.bind(program, "u_metric", "metric");
     set_medium(program, medium);
     return program;
 }
 
 void BloodGpu::deposit(const Pass& pass, const BloodMedium& medium, std::int64_t step) const {
-    const gl::Program& program = use_deposit(pass, medium, BloodShader::deposited, deposit_, film());
+    const gl::Program& program =
+        use_deposit(pass, medium, BloodShader::deposited, drops_[1 - drops_now_], film());
+    bind(pass, program, "u_deposit", deposit_);
     groups_.bind(pass, program);
     program.set("u_salt", static_cast<int>(step & 0xffffff));
     draw_into(pass, film_target_[1 - film_now_], gl::add_blend_state);

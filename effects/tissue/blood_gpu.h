@@ -26,11 +26,25 @@ namespace viscera::tissue {
 
 /// Film and drops on the GPU, and the passes that step them. All of it is bound to the size of the bake and
 /// to a number of drops. Every function draws into framebuffers of its own and leaves one of them bound.
+///
+/// The passes in their order, by the names of their shaders:
+/// take_surface():  start (areas of cells), ground and faces (what the film reads, block by block), jump
+/// (where
+///                  gutters lead), link (what drives a film across seams)
+/// look_at_tiles(): lives (which drops live, for the CPU), search (what each block of 8 x 8 texels holds)
+/// plan():          mark (blocks that drops reach), scan and reach (tiles of 32 x 32 that stir, and those
+/// beside
+///                  them), near (blocks that blood may reach), across (those across seams), settle (blocks
+///                  that are no longer stepped become alike in both textures); after a look, and every few
+///                  steps
+/// spawn():         deposit of drops that must make room, spawn
+/// step():          plan(), move (drops), film (and what comes across seams), gutter, deposit (what drops
+/// leave) begin_picture(): plan(), gutter (those that no step reads), cap (drops); then the effect draws the
+/// look
 class BloodGpu {
   public:
     BloodGpu(const gl::Functions& gl, int size, int max_drops);
 
-    [[nodiscard]] int size() const { return size_; }
     [[nodiscard]] std::int64_t capacity() const { return groups_.capacity(); }
 
     /// The surface is new or has moved, or gravity has turned. `empty`: nothing lies on it yet.
@@ -73,10 +87,11 @@ class BloodGpu {
     void bind_place(const Pass& pass, const gl::Program& program, const gl::Texture& film) const;
     void set_medium(const gl::Program& program, const BloodMedium& medium) const;
     void set_tools(const Pass& pass, const gl::Program& program, const BloodMedium& medium) const;
+    /// After move_drops(): lays down what drops have lost in it.
     void deposit(const Pass& pass, const BloodMedium& medium, std::int64_t step) const;
     void give_up(const Pass& pass, const BloodMedium& medium, const DropRange& evicted) const;
     [[nodiscard]] const gl::Program& use_deposit(const Pass& pass, const BloodMedium& medium,
-                                                 BloodShader shader, const gl::Texture& source,
+                                                 BloodShader shader, const gl::Texture& drops,
                                                  const gl::Texture& areas) const;
     void move_drops(const Pass& pass, const BloodMedium& medium);
     void step_cells(const Pass& pass, const BloodMedium& medium, BloodShader shader,

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "effects/tissue/gravity.h"
+#include "engine/core/hash.h"
 
 namespace viscera::tissue {
 
@@ -129,6 +130,20 @@ void LiquidParams::visit(ParamVisitor& v) {
              .min = 15.0,
              .max = 10000.0},
             steps_per_s);
+}
+
+std::uint64_t LiquidParams::key() const {
+    return Hash()
+        .add(viscosity_mpa_s)
+        .add(density_kg_m3)
+        .add(residual_mm)
+        .add(pinning_mm)
+        .add(drying_mm_s)
+        .add(drop_mm3)
+        .add(drop_aspect)
+        .add(trail_mm)
+        .add(drop_life_s)
+        .value();
 }
 
 double LiquidParams::mobility_per_mm_s() const {

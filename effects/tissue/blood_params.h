@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
@@ -65,6 +66,7 @@ struct LiquidParams {
     double steps_per_s = 120.0;
 
     void visit(ParamVisitor& v);
+    [[nodiscard]] std::uint64_t key() const;
     /// Of a film under standard gravity: density times gravity over viscosity [1/(mm s)].
     [[nodiscard]] double mobility_per_mm_s() const;
 };

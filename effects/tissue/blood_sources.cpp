@@ -12,6 +12,10 @@ namespace {
 
 // More drops than this from one wound in one step become larger ones instead.
 constexpr int most_drops_per_step = 8;
+// Smaller ones have squares that floats do not hold.
+constexpr double smallest_tool_mm = 1e-6;
+// More than any film's thickness.
+constexpr double most_sucked_mm = 1e6;
 
 bool finite(const glm::dvec3& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
@@ -45,11 +49,12 @@ bool usable(const WoundParams& w, Log& log) {
 }
 
 bool usable(const CleanerParams& t, Log& log) {
-    if (finite(t.position_mm) && std::isfinite(t.radius_mm) && t.radius_mm > 0.0 && std::isfinite(t.rate)) {
+    if (finite(t.position_mm) && std::isfinite(t.radius_mm) && t.radius_mm >= smallest_tool_mm &&
+        std::isfinite(t.rate)) {
         return true;
     }
     log.fault("tissue.tool_not_finite",
-              "a tool has a value that is not finite or no radius; it does nothing");
+              "a tool has a value that is not finite, or a radius below 1e-6 mm; it does nothing");
     return false;
 }
 
@@ -67,6 +72,12 @@ void collect_wounds(const BloodParams& params, const HostValues* values, Log& lo
             return;
         }
         wounds.push_back(wound);
+        const double length = glm::length(wound.direction);
+        if (wound.kind == BleedingKind::jet && !(length > 0.0 && std::isfinite(length))) {
+            log.fault("tissue.jet_no_direction",
+                      "a jet's direction has no length; its blood wells up instead");
+            wounds.back().kind = BleedingKind::ooze;
+        }
     };
     for (const WoundParams& wound : params.wounds) {
         add(wound);
@@ -124,7 +135,7 @@ glm::vec2 tool_power(const CleanerParams& tool, double dt_s) {
     }
     // The shader's profile 1 - d^2/r^2 has the volume pi r^2 / 2 per unit of height.
     const double volume = std::numbers::pi / 2.0 * tool.radius_mm * tool.radius_mm;
-    return {static_cast<float>(tool.rate * dt_s / volume), 0.0F};
+    return {static_cast<float>(std::min(tool.rate * dt_s / volume, most_sucked_mm)), 0.0F};
 }
 
 double DropMeter::drop_volume(double volume_mm3, double drop_mm3) {

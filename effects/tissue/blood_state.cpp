@@ -18,7 +18,7 @@ double BloodState::flying_mm3() const {
 
 void BloodState::begin_anew(std::int64_t at, double rate) {
     begun = true;
-    bled = moving = false;
+    bled = moving = woken = there = false;
     step = at;
     steps_per_s = rate;
     surface_key = 0;

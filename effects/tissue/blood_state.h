@@ -19,6 +19,8 @@ struct BloodState {
     bool begun = false;
     bool bled = false;      ///< blood is or was somewhere
     bool moving = false;    ///< something may change without a source
+    bool woken = false;     ///< what rests is to be stepped again
+    bool there = false;     ///< there is blood to show or to account for
     std::int64_t step = 0;  ///< the next one, on the grid of times
     double steps_per_s = 0.0;
     std::uint64_t version = 0;  ///< of what it shows
@@ -28,6 +30,7 @@ struct BloodState {
     bool surface_ends = false;    ///< the mesh has edges with nothing beyond
     std::uint64_t gpu_shape_key = 0;  ///< the same, of what `gpu` was made for
     std::uint64_t surface_key = 0;
+    std::uint64_t liquid_key = 0;
     std::uint64_t seam_key = 0;
     std::uint64_t looks = 0;         ///< at the tiles
     std::uint64_t disturbed_at = 0;  ///< the look before which answers are too old
@@ -46,6 +49,11 @@ struct BloodState {
     [[nodiscard]] static std::shared_ptr<BloodState> find(Assets& assets, std::string_view name);
     /// Blood of jets that has not come to the surface [mm^3].
     [[nodiscard]] double flying_mm3() const;
+    /// Something has been disturbed: answers to what was asked until now say nothing about rest.
+    void stir() {
+        moving = true;
+        disturbed_at = looks + 1;
+    }
     /// Empty, at a step.
     void begin_anew(std::int64_t at, double rate);
 };

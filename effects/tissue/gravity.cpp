@@ -1,5 +1,6 @@
 #include "effects/tissue/gravity.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/core/hash.h"
@@ -13,8 +14,8 @@ void GravityParams::visit(ParamVisitor& v) {
     v.field({.name = "gravity_m_s2",
              .doc = "Acceleration of what falls, in the world; by default that of a patient on the back.",
              .unit = "m/s^2",
-             .min = -1000.0,
-             .max = 1000.0},
+             .min = -most_gravity_m_s2,
+             .max = most_gravity_m_s2},
             gravity_m_s2);
     v.field({.name = "host_gravity",
              .doc = "Name of the host's array of 3 floats [m/s^2] that takes its place; empty: none."},
@@ -41,15 +42,19 @@ Gravity gravity_of(const GravityParams& params, const HostValues* values, Log& l
         values == nullptr || params.host_gravity.empty() ? nullptr : values->find(params.host_gravity);
     if (given != nullptr) {
         const auto& v = given->values;
-        if (v.size() == 3 && std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2])) {
+        // Comparisons are false for what is not a number.
+        const auto usable = [](float x) { return std::abs(static_cast<double>(x)) <= most_gravity_m_s2; };
+        if (v.size() == 3 && std::ranges::all_of(v, usable)) {
             gravity = {v[0], v[1], v[2]};
         } else {
-            log.fault("tissue.gravity", "host values '" + params.host_gravity +
-                                            "' are not 3 finite numbers; the scene's gravity counts");
+            log.fault("tissue.gravity",
+                      "host values '" + params.host_gravity +
+                          "' are not 3 numbers within 1000 m/s^2; the scene's gravity counts");
         }
     }
     const double length = glm::length(gravity);
     if (!(length > 0.0)) {
+        log.fault("tissue.no_gravity", "gravity is 0: blood stays where it is");
         return {};
     }
     return {gravity / length, length / standard_gravity_m_s2};

@@ -20,6 +20,7 @@ class Pass;
 namespace viscera::tissue {
 
 inline constexpr double standard_gravity_m_s2 = 9.80665;
+inline constexpr double most_gravity_m_s2 = 1000.0;  ///< along each axis
 
 /// Which way is down, and how strongly things fall.
 struct GravityParams {
@@ -39,8 +40,9 @@ struct Gravity {
     bool operator==(const Gravity&) const = default;
 };
 
-/// The host's gravity (3 floats [m/s^2]) where it gives one, else the scene's. What is not finite or has
-/// another number of entries is a fault, and the scene's counts.
+/// The host's gravity (3 floats [m/s^2]) where it gives one, else the scene's. What is not finite, is beyond
+/// most_gravity_m_s2 or has another number of entries is a fault, and the scene's counts. None is a fault,
+/// too.
 [[nodiscard]] Gravity gravity_of(const GravityParams& params, const HostValues* values, Log& log);
 
 /// What the flow over a surface is made by, besides the surface. tissue.gravity notes it, and tissue.blood

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "engine/core/hash.h"
+#include "engine/core/log.h"
 #include "engine/runtime/pass.h"
 
 namespace viscera::tissue {
@@ -75,6 +76,10 @@ std::vector<Port> JetEffect::ports() const {
 
 Work JetEffect::prepare(Prepare& prepare) {
     state_ = BloodState::find(prepare.assets(), params_.state);
+    if (prepare.has("height") && !state_->begun) {
+        prepare.log().fault("tissue.no_blood_of_name",
+                            "no tissue.blood has the state '" + params_.state + "' that a pass asks for");
+    }
     if (state_->jets.particles().empty() && !state_->jets_bleed) {
         return Work::idle("no blood is in the air");
     }

@@ -8,7 +8,6 @@
 namespace viscera::tissue {
 namespace {
 
-constexpr std::size_t most_particles = 4096;
 constexpr double longest_flight_s = 3.0;
 // Volumes of drops are spread evenly over their logarithm, from the mean's quarter to its fourfold.
 constexpr double size_scatter = 1.4;
@@ -51,6 +50,7 @@ void Jets::clear() {
     particles_.clear();
     particles_.reserve(most_particles);
     lost_mm3_ = 0.0;
+    refused_ = 0;
     drawn_ = 0;
 }
 
@@ -64,7 +64,7 @@ double Jets::noise() {
 }
 
 void Jets::leave(const WoundParams& wound, const glm::vec2& uv, const DropMeter::Drops& drops, double pulse,
-                 const glm::dvec3& gravity_mm_s2, double dt_s) {
+                 double dt_s) {
     const double length = glm::length(wound.direction);
     const glm::dvec3 direction = length > 0.0 ? wound.direction / length : glm::dvec3(0.0);
     const double whole = drops.count * drops.volume_mm3;
@@ -89,14 +89,14 @@ void Jets::leave(const WoundParams& wound, const glm::vec2& uv, const DropMeter:
         const double breaks = breakup * (1.0 + breakup_scatter * noise());
         if (particles_.size() >= most_particles) {
             lost_mm3_ += volume;
+            ++refused_;
             continue;
         }
-        const glm::dvec3 flown = since * (velocity + 0.5 * since * gravity_mm_s2);
-        particles_.push_back({.position_mm = wound.position_mm + start_mm * direction + flown,
-                              .velocity_mm_s = velocity + since * gravity_mm_s2,
+        particles_.push_back({.position_mm = wound.position_mm + start_mm * direction,
+                              .velocity_mm_s = velocity,
                               .volume_mm3 = volume,
-                              .age_s = since,
-                              .leaving_s = volume / rate,
+                              .age_s = since - dt_s,
+                              .leaving_s = rate > 0.0 ? volume / rate : 0.0,
                               .breakup_s = breaks,
                               .sealed_at = uv});
     }
@@ -105,12 +105,13 @@ void Jets::leave(const WoundParams& wound, const glm::vec2& uv, const DropMeter:
 void Jets::step(const TriangleTree& surface, const glm::dvec3& gravity_mm_s2, double dt_s,
                 std::vector<DropSpawn>& hits) {
     const auto flies_on = [&](JetParticle& particle) {
+        const double time = std::min(dt_s, dt_s + particle.age_s);
         const glm::dvec3 to =
-            particle.position_mm + dt_s * (particle.velocity_mm_s + 0.5 * dt_s * gravity_mm_s2);
+            particle.position_mm + time * (particle.velocity_mm_s + 0.5 * time * gravity_mm_s2);
         if (const auto hit = surface.first_hit(particle.position_mm, to)) {
             for (int i = 0; i <= spatter_drops; ++i) {
                 const double share = i == 0 ? 1.0 - spatter_drops * spatter_share : spatter_share;
-                hits.push_back({.uv = glm::vec2(hit->uv - glm::floor(hit->uv)),
+                hits.push_back({.uv = within_texture(hit->uv),
                                 .volume_mm3 = static_cast<float>(share * particle.volume_mm3),
                                 .radius_mm = static_cast<float>(i == 0 ? splash_mm : spatter_mm),
                                 .sealed_at = particle.sealed_at});
@@ -118,7 +119,7 @@ void Jets::step(const TriangleTree& surface, const glm::dvec3& gravity_mm_s2, do
             return false;
         }
         particle.position_mm = to;
-        particle.velocity_mm_s += dt_s * gravity_mm_s2;
+        particle.velocity_mm_s += time * gravity_mm_s2;
         particle.age_s += dt_s;
         if (particle.age_s > longest_flight_s) {
             lost_mm3_ += particle.volume_mm3;

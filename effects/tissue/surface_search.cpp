@@ -69,9 +69,9 @@ std::optional<double> entry(const glm::dvec3& from, const glm::dvec3& inverse, d
 
 }  // namespace
 
-std::optional<SurfacePoint> nearest_point(const MeshData& mesh, const glm::dmat4& to_world,
-                                          const glm::dvec3& place_mm) {
-    std::optional<SurfacePoint> best;
+std::optional<FoundPoint> nearest_point(const MeshData& mesh, const glm::dmat4& to_world,
+                                        const glm::dvec3& place_mm) {
+    std::optional<FoundPoint> best;
     for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
         std::array<glm::dvec3, 3> p;
         for (std::size_t k = 0; k < 3; ++k) {
@@ -102,6 +102,15 @@ std::optional<SurfacePoint> nearest_point(const MeshData& mesh, const glm::dmat4
     return best;
 }
 
+glm::vec2 within_texture(const glm::dvec2& uv) {
+    glm::vec2 within(0.0F);
+    for (int axis = 0; axis < 2; ++axis) {
+        const double whole = uv[axis] >= 0.0 && uv[axis] <= 1.0 ? 0.0 : std::floor(uv[axis]);
+        within[axis] = std::min(static_cast<float>(uv[axis] - whole), std::nextafter(1.0F, 0.0F));
+    }
+    return within;
+}
+
 TriangleTree::TriangleTree(const MeshData& mesh, const glm::dmat4& to_world) {
     triangles_.reserve(mesh.triangle_count());
     for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
@@ -120,7 +129,6 @@ TriangleTree::TriangleTree(const MeshData& mesh, const glm::dmat4& to_world) {
         const glm::dvec3 normal = glm::cross(triangle.e1, triangle.e2);
         if (glm::dot(normal, normal) > 0.0) {
             triangles_.push_back(triangle);
-            bounds_.extend(glm::vec3(triangle.p));
         }
     }
     if (!triangles_.empty()) {
@@ -160,8 +168,8 @@ void TriangleTree::build(std::size_t first, std::size_t count) {
     build(first + count / 2, count - count / 2);
 }
 
-std::optional<SurfacePoint> TriangleTree::nearest(const glm::dvec3& place_mm) const {
-    std::optional<SurfacePoint> best;
+std::optional<FoundPoint> TriangleTree::nearest(const glm::dvec3& place_mm) const {
+    std::optional<FoundPoint> best;
     const auto away = [&](std::uint32_t at) {
         return glm::length(place_mm - glm::clamp(place_mm, nodes_[at].low, nodes_[at].high));
     };
@@ -195,13 +203,13 @@ std::optional<SurfacePoint> TriangleTree::nearest(const glm::dvec3& place_mm) co
     return best;
 }
 
-std::optional<SurfacePoint> TriangleTree::first_hit(const glm::dvec3& from, const glm::dvec3& to) const {
+std::optional<FoundPoint> TriangleTree::first_hit(const glm::dvec3& from, const glm::dvec3& to) const {
     if (nodes_.empty()) {
         return std::nullopt;
     }
     const glm::dvec3 way = to - from;
     const glm::dvec3 inverse = 1.0 / way;
-    std::optional<SurfacePoint> best;
+    std::optional<FoundPoint> best;
     double farthest = 1.0;
     std::array<std::uint32_t, deepest> stack{};
     std::size_t held = 1;

@@ -10,8 +10,8 @@
 
 namespace viscera::tissue {
 
-/// A point of a mesh.
-struct SurfacePoint {
+/// A point of a mesh that was looked for.
+struct FoundPoint {
     std::uint32_t triangle = 0;
     glm::dvec3 position_mm{0.0};  ///< in the world
     glm::dvec2 uv{0.0};
@@ -20,8 +20,12 @@ struct SurfacePoint {
 
 /// The point of a mesh, placed by `to_world`, that is nearest to a place in the world. None: it has no
 /// triangle with an extent.
-[[nodiscard]] std::optional<SurfacePoint> nearest_point(const MeshData& mesh, const glm::dmat4& to_world,
-                                                        const glm::dvec3& place_mm);
+[[nodiscard]] std::optional<FoundPoint> nearest_point(const MeshData& mesh, const glm::dmat4& to_world,
+                                                      const glm::dvec3& place_mm);
+
+/// A point's UV within the texture. Whole textures are taken off to its sides; what lies on its right or
+/// upper border belongs to the last texel there.
+[[nodiscard]] glm::vec2 within_texture(const glm::dvec2& uv);
 
 /// The triangles of a placed mesh in boxes, for quick answers to where a straight way meets them.
 class TriangleTree {
@@ -30,10 +34,9 @@ class TriangleTree {
     TriangleTree(const MeshData& mesh, const glm::dmat4& to_world);
 
     /// The first point of the way from `from` to `to` [mm] on a triangle, of either side.
-    [[nodiscard]] std::optional<SurfacePoint> first_hit(const glm::dvec3& from, const glm::dvec3& to) const;
+    [[nodiscard]] std::optional<FoundPoint> first_hit(const glm::dvec3& from, const glm::dvec3& to) const;
     /// As nearest_point().
-    [[nodiscard]] std::optional<SurfacePoint> nearest(const glm::dvec3& place_mm) const;
-    [[nodiscard]] const Bounds& bounds() const { return bounds_; }
+    [[nodiscard]] std::optional<FoundPoint> nearest(const glm::dvec3& place_mm) const;
 
   private:
     struct Triangle {
@@ -56,7 +59,6 @@ class TriangleTree {
 
     std::vector<Triangle> triangles_;
     std::vector<Node> nodes_;
-    Bounds bounds_;
 };
 
 }  // namespace viscera::tissue

@@ -19,7 +19,8 @@ void main() {
     for (int y = first.y; y < end.y; ++y) {
         for (int x = first.x; x < end.x; ++x) {
             vec4 film = texelFetch(u_film, ivec2(x, y), 0);
-            float area = max(film.w, 0.0);
+            // Nothing, or a cell that has collapsed, holds volumes.
+            float area = film.w > 0.0 ? film.w : film.w < 0.0 ? 0.0 : 1.0;
             o_account.yw += area * vec2(film.x + film.y, film.z);
         }
     }

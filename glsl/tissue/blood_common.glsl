@@ -1,5 +1,6 @@
 // A film is a texture with a texel per place: height [mm], what is owed to the height [mm], what has left [mm], area [mm^2].
-// Area > 0: a cell of the surface; -1: a gutter, where the surface goes on across a seam; 0: nothing.
+// Area > 0: a cell of the surface; -1: a gutter, where the surface goes on across a seam; 0: nothing, or a cell that has collapsed: what
+// lay on it waits there as volumes [mm^3] in place of heights.
 // A step of the solver is a finite-volume one: what leaves a cell through a face enters the next. Both sides of a face find the same
 // volume, because both do the same operations on the same numbers.
 uniform vec4 u_flow;      // mobility [1/(mm s)], residual film [mm], time step [s], drying [mm/s]

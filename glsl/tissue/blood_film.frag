@@ -4,7 +4,7 @@
 #include "tissue/blood_relief.glsl"
 #include "tissue/blood_plan.glsl"
 #include "tissue/blood_on_ground.glsl"
-// One step of the film. The tiles that are drawn are those in which something can change.
+// One step of the film. The blocks that are drawn are those in which something can change.
 uniform sampler2D u_film;
 uniform sampler2D u_faces;  // of blood_faces.frag
 uniform float u_one;

@@ -14,7 +14,7 @@ uniform bool u_open;
 #include "tissue/blood_tools.glsl"
 #endif
 layout(location = 0) out vec4 o_drop;
-layout(location = 1) out vec4 o_deposit;  // where [texels], volume [mm^3], radius of the drop [mm]; -1: it left the surface
+layout(location = 1) out vec4 o_deposit;  // volume that becomes film, volume that is gone [mm^3], radius of the drop [mm]
 
 const float longest_step = 2.0;  // [texels]
 const float giving_up_s = 0.05;
@@ -48,6 +48,10 @@ void main() {
     cap = min(1.0, longest_step / max(length(v1) * dt, 1e-20));
     // A direction holds in the chart in which it was read.
     vec3 to = middle.z == 2.0 ? place_on_surface(middle.xy + (0.5 * dt * cap) * v1) : place_on_surface(from + (dt * cap) * v1);
+    // Where the surface has collapsed under it, it stays and waits until its life ends.
+    vec4 below = texel_at(u_film, ivec2(floor(from)));
+    bool waits = below.w == 0.0;
+    to = waits ? vec3(from, 1.0) : to;
     bool falls = to.z == 0.0;
     // Past the corner of a chart a drop may come to where no plan has looked: there it waits for the next one.
     if (!falls && !steps_at(ivec2(floor(to.xy)))) {
@@ -58,25 +62,27 @@ void main() {
 
     float volume = drop.z;
     float deposit = u_drop.y * 2.0 * radius * speed * dt;
-    float film = texel_at(u_film, ivec2(floor(from))).x;
-    bool rests = speed < slowest || film > 0.8 * height || drop.w > u_drop.z || (falls && !u_open);
+    bool stands = speed < slowest || below.x > 0.8 * height;
+    bool rests = (stands && !waits) || drop.w > u_drop.z || (falls && !u_open);
     if (rests) {
         deposit = max(deposit, volume * (1.0 - exp(-dt / giving_up_s)));
     }
     float left = max(volume - deposit, 0.0);
-    float target = radius;
+    float gone = 0.0;
     if (falls && u_open) {
+        gone = volume;
         left = 0.0;
-        target = -1.0;
     }
 #ifdef TOOLS
-    if (taken(ivec2(floor(from)), height) > 0.1 * height) {
-        left = 0.0;
-        target = -1.0;
-    }
+    // The same share as of a film as high; what is too little to go on as a drop goes with it.
+    float share = waits ? 0.0 : taken(ivec2(floor(from)), height) / height;
+    float rest = left;
+    left *= 1.0 - share;
+    left = left < u_drop.w ? 0.0 : left;
+    gone += share > 0.0 ? rest - left : 0.0;
 #endif
     left = left < u_drop.w || drop.w > u_drop.z + longest_end_s ? 0.0 : left;
-    // What the drop has lost is found from what it keeps, so that nothing is lost in rounding.
-    o_deposit = vec4(from, volume - left, target);
+    // What becomes film is found from what the drop keeps, so that nothing is lost in rounding.
+    o_deposit = vec4(max(volume - left - gone, 0.0), gone, radius, 0.0);
     o_drop = left > 0.0 ? vec4((to.z > 0.0 ? to.xy : from) / size, left, drop.w + dt) : vec4(0.0);
 }

@@ -153,7 +153,7 @@ TEST(BloodFilm, ASeamChangesNothing) {
                     found.front, 100.0 * (found.front / expected.front - 1.0), found.mean,
                     100.0 * (found.mean / expected.mean - 1.0), found.volume / expected.volume - 1.0);
         EXPECT_NEAR(found.mean / expected.mean, 1.0, 0.005) << c.name;
-        EXPECT_NEAR(found.front / expected.front, 1.0, 0.01) << c.name;
+        EXPECT_NEAR(found.front / expected.front, 1.0, 0.005) << c.name;
     }
 }
 

@@ -148,7 +148,21 @@ TEST(GravityMap, IsMadeAgainOnlyWhenGravityTurns) {
     values.set("tissue.gravity", std::array{9.8F, std::nanf(""), 0.0F});
     EXPECT_EQ(status(0.4, &values), "run");
     EXPECT_NEAR(stage.read("tissue.gravity").at(30, 30, 1), 1.0F, 1e-6F);
-    EXPECT_EQ(stage.stage().renderer().log().faults().count("tissue.gravity"), 1U);
+    const auto faults = [&] { return stage.stage().renderer().log().faults(); };
+    EXPECT_EQ(faults().count("tissue.gravity"), 1U);
+    // So is more than a scene may have, and none at all is said.
+    const std::uint64_t before = faults().at("tissue.gravity");
+    values.set("tissue.gravity", std::array{0.0F, 1000.0F, 0.0F});
+    EXPECT_EQ(status(0.5, &values), "run");
+    EXPECT_EQ(faults().at("tissue.gravity"), before);
+    values.set("tissue.gravity", std::array{1e30F, 0.0F, 0.0F});
+    EXPECT_EQ(status(0.6, &values), "run");
+    EXPECT_EQ(faults().at("tissue.gravity"), before + 1);
+    EXPECT_NEAR(stage.read("tissue.gravity").at(30, 30, 1), 1.0F, 1e-6F);
+    EXPECT_FALSE(faults().contains("tissue.no_gravity"));
+    values.set("tissue.gravity", std::array{0.0F, 0.0F, 0.0F});
+    status(0.7, &values);
+    EXPECT_TRUE(faults().contains("tissue.no_gravity"));
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ Jets spurt(const WoundParams& wound, int steps) {
     DropMeter meter;
     std::vector<DropSpawn> hits;
     for (int i = 0; i < steps; ++i) {
-        jets.leave(wound, {0.5F, 0.5F}, meter.flow(wound.rate_mm3_s * dt_s, 0.125), 1.0, gravity_mm_s2, dt_s);
+        jets.leave(wound, {0.5F, 0.5F}, meter.flow(wound.rate_mm3_s * dt_s, 0.125), 1.0, dt_s);
         jets.step(TriangleTree(), gravity_mm_s2, dt_s, hits);
     }
     EXPECT_TRUE(hits.empty());
@@ -97,6 +97,91 @@ TEST(Jets, FlyOnParabolas) {
             particle.position_mm - t * (particle.velocity_mm_s - 0.5 * t * gravity_mm_s2);
         EXPECT_LT(glm::length(start), 0.2 + 1e-9);
     }
+}
+
+/// A square wall at x, of 40 mm a side.
+MeshData wall_at(float x) {
+    MeshData mesh;
+    for (const glm::vec2 corner :
+         {glm::vec2(-20, -20), glm::vec2(20, -20), glm::vec2(20, 20), glm::vec2(-20, 20)}) {
+        mesh.positions.emplace_back(x, corner);
+        mesh.uvs.push_back(0.5F + corner / 50.0F);
+    }
+    mesh.indices = {0, 1, 2, 0, 2, 3};
+    return mesh;
+}
+
+TEST(Jets, StartAtTheirWound) {
+    WoundParams wound = artery();
+    wound.direction = {1.0, 0.0, 0.0};
+    Jets jets;
+    jets.clear();
+    std::vector<DropSpawn> hits;
+    jets.leave(wound, {0.5F, 0.5F}, {8, 0.2}, 1.0, dt_s);
+    jets.step(TriangleTree(), glm::dvec3(0.0), dt_s, hits);
+    // One after the other through the step, the last one at its end: a stream from the wound on.
+    double first = 1e9;
+    double last = 0.0;
+    ASSERT_EQ(jets.particles().size(), 8U);
+    for (const JetParticle& particle : jets.particles()) {
+        EXPECT_GE(particle.age_s, 0.0);
+        EXPECT_LT(particle.age_s, dt_s);
+        EXPECT_NEAR(particle.position_mm.x, 0.2 + particle.age_s * particle.velocity_mm_s.x, 1e-9);
+        first = std::min(first, particle.position_mm.x);
+        last = std::max(last, particle.position_mm.x);
+    }
+    std::printf("  from %.2f to %.2f mm after a step of %.2f mm\n", first, last, wound.speed_mm_s * dt_s);
+    EXPECT_LT(first, 0.2 + 0.2 * wound.speed_mm_s * dt_s);
+    EXPECT_LT(last, 0.2 + 1.1 * wound.speed_mm_s * dt_s);
+}
+
+TEST(Jets, MeetAWallRightBeforeTheirWound) {
+    WoundParams wound = artery();
+    wound.direction = {1.0, 0.0, 0.0};
+    Jets jets;
+    jets.clear();
+    std::vector<DropSpawn> hits;
+    const TriangleTree wall(wall_at(1.0F), glm::dmat4(1.0));
+    double landed = 0.0;
+    for (int i = 0; i < 3; ++i) {
+        jets.leave(wound, {0.5F, 0.5F}, {8, 0.2}, 1.0, dt_s);
+        jets.step(wall, gravity_mm_s2, dt_s, hits);
+        for (const JetParticle& particle : jets.particles()) {
+            EXPECT_LT(particle.position_mm.x, 1.0);
+        }
+    }
+    for (const DropSpawn& drop : hits) {
+        landed += static_cast<double>(drop.volume_mm3);
+    }
+    EXPECT_GT(landed, 2.0 * 8 * 0.2);
+    EXPECT_NEAR(landed + jets.flying_mm3(), 3 * 8 * 0.2, 1e-5);
+}
+
+TEST(Jets, WhatIsLeftInTheMeterOfAClosedWoundIsADrop) {
+    WoundParams wound = artery();
+    wound.rate_mm3_s = 0.0;
+    Jets jets;
+    jets.clear();
+    std::vector<DropSpawn> hits;
+    jets.leave(wound, {0.5F, 0.5F}, {1, 0.2}, 1.0, dt_s);
+    jets.step(TriangleTree(), gravity_mm_s2, dt_s, hits);
+    ASSERT_EQ(jets.particles().size(), 1U);
+    EXPECT_EQ(thread_s(jets.particles()[0]), 0.0);
+    EXPECT_TRUE(std::isfinite(glm::length(jets.particles()[0].position_mm)));
+}
+
+TEST(Jets, WhatThereIsNoRoomForIsLostAndCounted) {
+    Jets jets;
+    jets.clear();
+    std::vector<DropSpawn> hits;
+    for (int i = 0; i < 600; ++i) {
+        jets.leave(artery(), {0.5F, 0.5F}, {8, 0.2}, 1.0, 1e-4);
+        jets.step(TriangleTree(), gravity_mm_s2, 1e-4, hits);
+    }
+    EXPECT_EQ(jets.particles().size(), Jets::most_particles);
+    EXPECT_EQ(jets.refused(), 600 * 8 - Jets::most_particles);
+    EXPECT_NEAR(jets.flying_mm3() + jets.lost_mm3(), 600 * 8 * 0.2, 1e-6);
+    EXPECT_GT(jets.lost_mm3(), 0.0);
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+#include <cmath>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -40,6 +41,16 @@ TEST(SurfaceSearch, TheTreeFindsTheNearestPointOfAllTriangles) {
         EXPECT_LT(glm::length(found->uv - expected->uv), 1e-9);
     }
     EXPECT_FALSE(TriangleTree().nearest(glm::dvec3(0.0)).has_value());
+}
+
+TEST(SurfaceSearch, TheTexturesBorderIsNotItsOppositeOne) {
+    const float last = std::nextafter(1.0F, 0.0F);
+    EXPECT_EQ(within_texture({0.0, 1.0}), glm::vec2(0.0F, last));
+    EXPECT_EQ(within_texture({1.0, 0.25}), glm::vec2(last, 0.25F));
+    EXPECT_EQ(within_texture({1.0 - 1e-12, 0.5}), glm::vec2(last, 0.5F));
+    // Beyond it the texture is repeated.
+    EXPECT_EQ(within_texture({1.25, -0.25}), glm::vec2(0.25F, 0.75F));
+    EXPECT_EQ(within_texture({-1e-12, 7.5}), glm::vec2(last, 0.5F));
 }
 
 }  // namespace
