@@ -20,8 +20,9 @@ std::vector<Port> SilhouetteEffect::ports() const {
 Work SilhouetteEffect::prepare(Prepare& prepare) {
     if (!data_ || parameters_key_ != prepare.parameters_key()) {
         parameters_key_ = prepare.parameters_key();
+        mesh_key_ = mesh_.key(prepare.assets());
         data_ = prepare.assets().shared<MeshData>(
-            parameters_key_, [&] { return std::make_shared<MeshData>(mesh_.load_merged(prepare.log())); });
+            mesh_key_, [&] { return std::make_shared<MeshData>(mesh_.load_merged(prepare.log())); });
     }
     const glm::dmat4 view_projection = prepare.frame().eye().view_projection();
     const glm::ivec2 size = prepare.size("mask");
@@ -35,7 +36,7 @@ Work SilhouetteEffect::prepare(Prepare& prepare) {
 
 void SilhouetteEffect::draw(const Pass& pass) {
     const gl::Mesh& mesh = *pass.assets().shared<gl::Mesh>(
-        parameters_key_, [&] { return std::make_shared<gl::Mesh>(pass.gl(), *data_); });
+        mesh_key_, [&] { return std::make_shared<gl::Mesh>(pass.gl(), *data_); });
     const gl::Program& program = pass.use(0);
     program.set("u_view_projection", glm::mat4(pass.frame().eye().view_projection()));
     mesh.draw();

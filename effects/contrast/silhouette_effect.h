@@ -20,6 +20,7 @@ class SilhouetteEffect final : public Effect {
     std::vector<ProgramDesc> programs_;
     std::shared_ptr<const MeshData> data_;
     std::uint64_t parameters_key_ = 0;
+    std::uint64_t mesh_key_ = 0;
 };
 
 }  // namespace viscera::contrast

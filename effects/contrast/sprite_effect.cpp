@@ -256,9 +256,9 @@ double SpriteEffect::layer_of(double angle_deg) const {
 void SpriteEffect::draw(const Pass& pass) {
     Hash key;
     for (const SpriteViewParams& view : params_.views) {
-        key.add(std::string_view(view.image.path.native()));
+        key.add(pass.assets().file_key(view.image.path));
     }
-    key.add(std::string_view(params_.front.path.native()));
+    key.add(pass.assets().file_key(params_.front.path));
     const Pictures& pictures = *pass.assets().shared<Pictures>(
         key.value(), [&] { return std::make_shared<Pictures>(pass.gl(), pass.assets(), params_); });
     const gl::Program& program = pass.use((pictures.front ? 1U : 0U) | (masked_ ? 2U : 0U));

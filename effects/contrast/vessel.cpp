@@ -151,8 +151,12 @@ void VesselParams::visit(ParamVisitor& v) {
 std::shared_ptr<const Vessel> load_vessel(Assets& assets, const VesselParams& params) {
     VesselParams copy = params;
     const std::string text = write_params([&](ParamVisitor& v) { copy.visit(v); }).dump();
-    return assets.shared<Vessel>(Hash().add(std::string_view(text)).value(),
-                                 [&] { return make_vessel(params, assets.log()); });
+    const std::uint64_t key = Hash()
+                                  .add(std::string_view(text))
+                                  .add(assets.file_key(params.mesh.file.path))
+                                  .add(assets.file_key(params.centreline.path))
+                                  .value();
+    return assets.shared<Vessel>(key, [&] { return make_vessel(params, assets.log()); });
 }
 
 }  // namespace viscera::contrast

@@ -73,7 +73,7 @@ std::span<const ProgramDesc> SurfaceEffect::programs() const {
 Work SurfaceEffect::prepare(Prepare& prepare) {
     if (!data_ || parameters_key_ != prepare.parameters_key()) {
         parameters_key_ = prepare.parameters_key();
-        mesh_key_ = params_.mesh.key();
+        mesh_key_ = params_.mesh.key(prepare.assets());
         data_ = prepare.assets().shared<MeshData>(
             mesh_key_, [&] { return std::make_shared<MeshData>(params_.mesh.load_merged(prepare.log())); });
         bounds_ = data_->bounds();

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "engine/core/hash.h"
 #include "engine/gl/texture.h"
 #include "engine/runtime/pass.h"
 
@@ -67,9 +66,9 @@ Work ImageEffect::prepare(Prepare& prepare) {
 }
 
 void ImageEffect::draw(const Pass& pass) {
-    const std::string file = params_.file.path.string();
     const gl::Texture& texture =
-        *pass.assets().shared<gl::Texture>(Hash().add(std::string_view(file)).value(), [&] {
+        *pass.assets().shared<gl::Texture>(pass.assets().file_key(params_.file.path), [&] {
+            const std::string file = params_.file.path.string();
             const std::shared_ptr<const Image> image = pass.assets().image(params_.file.path);
             return std::make_shared<gl::Texture>(
                 gl::Texture::from_image(pass.gl(), finite(*image, pass.log(), file), file));

@@ -125,7 +125,7 @@ std::shared_ptr<const Source> load_source(Assets& assets, const SourceParams& pa
         return live_source(assets, *found->volume, params.channel);
     }
     const std::uint64_t key = Hash()
-                                  .add(params.file.path.string())
+                                  .add(assets.file_key(params.file.path))
                                   .add(params.reduce)
                                   .add(params.channel)
                                   .add(params.geometry ? key_of(*params.geometry) : 0)

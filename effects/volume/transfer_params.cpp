@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "engine/core/error.h"
-#include "engine/core/hash.h"
 #include "engine/io/transfer_function.h"
 
 namespace viscera::volume {
@@ -129,8 +128,7 @@ TransferFunction load_function(const TransferParams& params, Assets& assets) {
     using Presets = std::vector<TransferFunction>;
     std::shared_ptr<Presets> presets;
     if (!params.file.empty()) {
-        const std::string path = params.file.path.string();
-        presets = assets.shared<Presets>(Hash().add(path).value(), [&] {
+        presets = assets.shared<Presets>(assets.file_key(params.file.path), [&] {
             return std::make_shared<Presets>(io::load_transfer_functions(params.file.path, assets.log()));
         });
     }

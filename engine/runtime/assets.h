@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <typeindex>
 #include <utility>
 
@@ -49,6 +50,14 @@ class Assets {
         });
     }
 
+    /// For keys of what is made from a file: where it lies, how large it is and when it was written. Of a
+    /// folder its files count, too. Each is looked at when it is first asked for, and not again before
+    /// forget_files(), so this may be called in each frame. What a file names beside itself does not count.
+    [[nodiscard]] std::uint64_t file_key(const std::filesystem::path& file);
+    /// Whether files have been written since is asked anew: a file that was is then read again, and what was
+    /// made from it made again.
+    void forget_files() { file_keys_.clear(); }
+
     /// A picture file (PNG, JPEG, EXR). Throws Error(file).
     [[nodiscard]] std::shared_ptr<const Image> image(const std::filesystem::path& file);
 
@@ -72,6 +81,7 @@ class Assets {
     ProgressCallback progress_;
     io::DiskCache disk_cache_;
     std::map<Id, Entry> entries_;
+    std::map<std::string, std::uint64_t, std::less<>> file_keys_;  ///< by path
     std::uint64_t scenes_ = 0;
 };
 

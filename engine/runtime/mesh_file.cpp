@@ -2,6 +2,7 @@
 
 #include "engine/core/hash.h"
 #include "engine/io/mesh.h"
+#include "engine/runtime/assets.h"
 
 namespace viscera {
 
@@ -16,12 +17,8 @@ void MeshFile::visit(ParamVisitor& v, const MeshFileNames& names) {
             mm_per_unit);
 }
 
-std::uint64_t MeshFile::key() const {
-    return Hash()
-        .add(std::string_view(file.path.native()))
-        .add(filter)
-        .add(mm_per_unit.value_or(0.0))
-        .value();
+std::uint64_t MeshFile::key(Assets& assets) const {
+    return Hash().add(assets.file_key(file.path)).add(filter).add(mm_per_unit.value_or(0.0)).value();
 }
 
 std::vector<MeshData> MeshFile::load(Log& log) const {

@@ -10,6 +10,7 @@
 
 namespace viscera {
 
+class Assets;
 class Log;
 
 /// How the fields of a MeshFile are called among other parameters; the third's key is `mm_per_unit`.
@@ -28,8 +29,8 @@ struct MeshFile {
     std::optional<double> mm_per_unit;
 
     void visit(ParamVisitor& v, const MeshFileNames& names = {});
-    /// Hash of all of it.
-    [[nodiscard]] std::uint64_t key() const;
+    /// Hash of all of it, and of the file as `assets` know it.
+    [[nodiscard]] std::uint64_t key(Assets& assets) const;
     /// The file's meshes, apart or as one. Throws as io::load_meshes().
     [[nodiscard]] std::vector<MeshData> load(Log& log) const;
     [[nodiscard]] MeshData load_merged(Log& log) const;

@@ -83,6 +83,7 @@ class Renderer::Impl {
         scene_.set(std::move(scene), imported);
         timeline_ = TimelineValues(scene_.scene().timeline);
         assets_.begin_scene();
+        assets_.forget_files();
         watch_.forget();
     }
 

@@ -111,8 +111,9 @@ class Renderer {
     Renderer(Renderer&&) noexcept;
     Renderer& operator=(Renderer&&) noexcept;
 
-    /// Takes a scene; throws Error(scene) that lists every fault and then keeps the scene it had. `imported`:
-    /// targets that the frames will bring as Frame::imported.
+    /// Takes a scene; throws Error(scene) that lists every fault and then keeps the scene it had. Files that
+    /// have been written since are read anew. `imported`: targets that the frames will bring as
+    /// Frame::imported.
     void set_scene(Scene scene, std::span<const ImportedTarget> imported = {});
     [[nodiscard]] const Scene& scene() const;
     /// Changes one parameter of a pass: pointer relative to its parameters ("/cloud/radius_mm"). Throws

@@ -87,7 +87,7 @@ SurfaceMesh::SurfaceMesh(TextureSpace space)
 
 std::shared_ptr<SurfaceMesh> SurfaceMesh::load(Assets& assets, const SurfaceMeshParams& params) {
     const std::uint64_t key =
-        Hash().add(params.MeshFile::key()).add(params.host_positions).add(params.atlas).value();
+        Hash().add(params.MeshFile::key(assets)).add(params.host_positions).add(params.atlas).value();
     return assets.shared<SurfaceMesh>(key, [&] {
         return std::make_shared<SurfaceMesh>(
             make_texture_space(params.load(assets.log()), params.atlas, params.file.path.string(), assets));

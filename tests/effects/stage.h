@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -20,9 +21,11 @@ namespace viscera::test {
 /// A renderer with every effect in an offscreen context of its own, and what it complained of.
 class Stage {
   public:
+    /// watched: what stands in for the context's functions, such as a recorder's.
     explicit Stage(Backend backend = Backend::osmesa, ShaderReader shaders = {},
                    ComputeUse compute = ComputeUse::automatic,
-                   BackgroundFill background = BackgroundFill::automatic)
+                   BackgroundFill background = BackgroundFill::automatic,
+                   const std::function<ProcAddress(ProcAddress)>& watched = {})
         : context_(create_context(backend, {.debug = true})) {
         register_all(registry_);
         RendererOptions options;
@@ -34,7 +37,8 @@ class Stage {
         options.shaders = std::move(shaders);
         options.compute = compute;
         options.background = background;
-        renderer_ = std::make_unique<Renderer>(context_->proc_address(), registry_, std::move(options));
+        const ProcAddress proc = context_->proc_address();
+        renderer_ = std::make_unique<Renderer>(watched ? watched(proc) : proc, registry_, std::move(options));
     }
 
     Stage(const Stage&) = delete;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -16,8 +17,14 @@ class EnergyStage {
   public:
     explicit EnergyStage(const nlohmann::json& coagulate = nlohmann::json::object(), const Plane& plane = {},
                          const std::string& name = "plane", int size = 128,
-                         const std::string& format = "r32f")
-        : size_(size) {
+                         const std::string& format = "r32f",
+                         const std::function<ProcAddress(ProcAddress)>& watched = {})
+        : stage(Backend::osmesa, {}, ComputeUse::automatic, BackgroundFill::automatic, watched), size_(size) {
+        stage.load(scene(coagulate, plane, name, size, format));
+    }
+    [[nodiscard]] static nlohmann::json scene(const nlohmann::json& coagulate = nlohmann::json::object(),
+                                              const Plane& plane = {}, const std::string& name = "plane",
+                                              int size = 128, const std::string& format = "r32f") {
         const nlohmann::json mesh{{"file", plane.write(name).string()}};
         nlohmann::json parameters{{"mesh", mesh}, {"size", size}};
         if (!coagulate.is_null()) {
@@ -33,7 +40,7 @@ class EnergyStage {
         scene["passes"].push_back(pass("coagulate", "tissue.coagulate", parameters));
         scene["outputs"] = {"tissue.energy", "tissue.position"};
         scene["targets"]["tissue.energy"]["format"] = format;
-        stage.load(scene);
+        return scene;
     }
 
     struct HostContact {
