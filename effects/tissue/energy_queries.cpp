@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "engine/core/error.h"
 #include "engine/core/pixel_index.h"
@@ -11,8 +12,6 @@
 namespace viscera::tissue {
 namespace {
 
-constexpr std::array<const char*, 3> names{"tissue.energy", "tissue.position", "tissue.metric"};
-
 float distance2(const glm::vec3& p, const glm::vec3& low, const glm::vec3& high) {
     const glm::vec3 outside = glm::max(glm::max(low - p, p - high), 0.0F);
     return glm::dot(outside, outside);
@@ -20,8 +19,11 @@ float distance2(const glm::vec3& p, const glm::vec3& low, const glm::vec3& high)
 
 }  // namespace
 
-std::vector<std::string> EnergyQueries::targets() {
-    return {names.begin(), names.end()};
+EnergyQueries::EnergyQueries(EnergyTargets names)
+    : names_{std::move(names.energy), std::move(names.position), std::move(names.metric)} {}
+
+std::vector<std::string> EnergyQueries::targets(const EnergyTargets& names) {
+    return {names.energy, names.position, names.metric};
 }
 
 bool EnergyQueries::update(Renderer& renderer, std::optional<std::uint64_t> most_frames_behind) {
@@ -29,24 +31,41 @@ bool EnergyQueries::update(Renderer& renderer, std::optional<std::uint64_t> most
         renderer.wait_for_watched(*most_frames_behind);
     }
     std::array<const WatchedTarget*, 3> copies{};
-    for (std::size_t i = 0; i < names.size(); ++i) {
-        copies[i] = renderer.watched(names[i]);
+    for (std::size_t i = 0; i < names_.size(); ++i) {
+        copies[i] = renderer.watched(names_[i]);
         if (copies[i] == nullptr) {
+            forget();
             return false;
         }
     }
-    if (versions_[1] != copies[1]->version || versions_[2] != copies[2]->version) {
-        take_surface(copies[1]->image, copies[2]->image);
+    try {
+        take(copies);
+    } catch (...) {
+        forget();
+        throw;
     }
-    if (versions_[0] != copies[0]->version) {
-        take_energy(copies[0]->image);
-    }
-    for (std::size_t i = 0; i < copies.size(); ++i) {
-        versions_[i] = copies[i]->version;
-    }
-    frames_behind_ = copies[0]->frames_behind;
-    time_s_ = copies[0]->time_s;
     return true;
+}
+
+void EnergyQueries::take(const std::array<const WatchedTarget*, 3>& copies) {
+    const auto [energy, position, metric] = copies;
+    if (versions_[1] != position->version || versions_[2] != metric->version) {
+        take_surface(position->image, metric->image);
+    }
+    if (versions_[0] != energy->version || energies_.empty()) {
+        take_energy(energy->image);
+    }
+    versions_ = {energy->version, position->version, metric->version};
+    const WatchedTarget& oldest = **std::ranges::max_element(copies, {}, &WatchedTarget::frames_behind);
+    frames_behind_ = oldest.frames_behind;
+    time_s_ = oldest.time_s;
+}
+
+void EnergyQueries::forget() {
+    energies_.clear();
+    versions_ = {};
+    frames_behind_ = 0;
+    time_s_ = 0.0;
 }
 
 void EnergyQueries::take_surface(const Image& position, const Image& metric) {
@@ -126,7 +145,7 @@ void EnergyQueries::nearest_in_tile(std::size_t tile, const glm::vec3& point, fl
             const glm::vec4& place = places_[index(x, y)];
             const glm::vec3 way = glm::vec3(place) - point;
             const float d2 = glm::dot(way, way);
-            if (place.w == 1.0F && d2 < least) {
+            if (place.w == 1.0F && d2 <= least) {
                 least = d2;
                 texel = index(x, y);
             }
@@ -154,7 +173,7 @@ std::optional<double> EnergyQueries::energy_at(const glm::dvec3& point_mm, doubl
     }
     nearest_in_tile(first, point, least, texel);
     for (std::size_t t = 0; t < boxes_.size(); ++t) {
-        if (t != first && distance2(point, boxes_[t].low, boxes_[t].high) < least) {
+        if (t != first && distance2(point, boxes_[t].low, boxes_[t].high) <= least) {
             nearest_in_tile(t, point, least, texel);
         }
     }

@@ -271,7 +271,7 @@ std::optional<Executor::Output> Executor::output(std::string_view name) const {
     }
     const ContentState& state = schedule_.contents()[found->content];
     return Output{state.empty ? nullptr : &texture_of(state.holder), &plan_.contents[found->content],
-                  state.key};
+                  state.key, plan_.contents[state.holder].imported.has_value()};
 }
 
 GLuint Executor::release(std::string_view name) {

@@ -46,6 +46,7 @@ class Executor {
         const gl::Texture* texture = nullptr;
         const PlanContent* content = nullptr;
         std::uint64_t key = 0;  ///< names what it holds: equal keys, equal pixels
+        bool imported = false;  ///< the texture is the host's, who may change it after the frame
     };
     [[nodiscard]] std::optional<Output> output(std::string_view name) const;
     /// Outside of this, content `newer` is as `older` (Output::key); none: not known.

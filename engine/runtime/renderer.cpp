@@ -117,7 +117,7 @@ class Renderer::Impl {
         report_.index = frame.index;
         report_.time_s = frame.time_s;
         report_.targets.clear();
-        watch_.poll();  // what of the last frame has been done by now would lie a frame back afterwards
+        watch_.take();  // what of the last frame has been done by now would lie a frame back afterwards
         if (frame.values == nullptr && !timeline_.empty()) {
             Frame with_values = frame;
             with_values.values = &timeline_.at(frame.time_s, log_);
@@ -270,10 +270,10 @@ void Renderer::watch(std::vector<std::string> targets, WatchPath path) {
     impl_->with_host_state([&] { impl_->watch(targets, path); });
 }
 void Renderer::wait_for_watched(std::uint64_t most_frames_behind) {
-    impl_->with_host_state([&] { impl_->watch_.wait(most_frames_behind); });
+    impl_->with_host_state([&] { impl_->watch_.wait(impl_->executor_, most_frames_behind); });
 }
 const WatchedTarget* Renderer::watched(std::string_view target) {
-    impl_->with_host_state([&] { impl_->watch_.poll(); });
+    impl_->with_host_state([&] { impl_->watch_.poll(impl_->executor_); });
     return impl_->watch_.find(target);
 }
 void Renderer::poll_captures() {

@@ -80,10 +80,12 @@ struct WatchedTarget {
     Image image;
     std::uint64_t frame = 0;  ///< Frame::index of the latest frame that it is right for
     double time_s = 0.0;      ///< and its time
-    /// Frames rendered since: 0 right after a frame that changed nothing, mostly 1 while it changes, more
-    /// when the GPU is behind.
+    /// Frames rendered since: 0 once the last frame has arrived or when it changed nothing, mostly 1 while it
+    /// changes, more when the GPU is behind.
     std::uint64_t frames_behind = 0;
-    std::uint64_t version = 0;  ///< changes whenever the image does
+    /// Changes whenever the image does, and is never one that another copy has or had: of another target,
+    /// scene or renderer.
+    std::uint64_t version = 0;
 };
 
 /// How watched targets come back.
@@ -141,10 +143,14 @@ class Renderer {
     /// target of depth.
     void watch(std::vector<std::string> targets, WatchPath path = WatchPath::automatic);
     /// The latest copy that has arrived, without waiting; valid until the next call of any member. Null: not
-    /// watched, or none has arrived yet.
+    /// watched, or none has arrived yet, of this scene: set_scene forgets those of the one before, and so
+    /// does set_parameter where ports change with the parameter. What a frame could not send because too much
+    /// was on its way is sent now, so copies catch up without further frames, unless the target is an
+    /// imported texture or was given away.
     [[nodiscard]] const WatchedTarget* watched(std::string_view target);
-    /// For logic to which age matters more than speed: waits until no watched copy lies more than this many
-    /// frames back, at least 1. Holds where it is called after each frame.
+    /// For logic to which age matters more than speed: waits until there is a copy of each watched target
+    /// and none lies more than this many frames back. Holds where it is called after each frame; of an
+    /// imported texture, for 1 or more.
     void wait_for_watched(std::uint64_t most_frames_behind);
     /// Which targets the next frames read back, and who receives them.
     void set_dump(DumpRequest request, CaptureSink sink);

@@ -1,6 +1,7 @@
 #include "engine/runtime/target_watch.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cstring>
 
 #include "engine/core/error.h"
@@ -16,6 +17,12 @@ namespace {
 // Requests of one target under way, or 1 where they share a mirror. A GPU that is farther behind is asked
 // again when it has caught up, for all that has changed by then.
 constexpr std::size_t most_requests = 4;
+
+/// Versions are unlike over all copies, so that one who is given another scene's or renderer's notices.
+std::uint64_t next_version() {
+    static std::atomic<std::uint64_t> last{0};
+    return ++last;
+}
 
 std::size_t bytes_of(const PixelRegion& region, PixelFormat format) {
     return static_cast<std::size_t>(region.area()) * bytes_per_pixel(format);
@@ -45,8 +52,16 @@ void TargetWatch::drop(Entry& entry) {
     for (const Request& request : entry.requests) {
         gl_.DeleteSync(request.fence);
     }
+    entry.left_out = entry.left_out || !entry.requests.empty();
     entry.requests.clear();
     entry.asked_key = entry.shown_key;
+}
+
+void TargetWatch::forget() {
+    const std::vector<std::string> names = targets();
+    set_targets({});
+    set_targets(names);
+    free_.clear();  // of the sizes of the scene before
 }
 
 void TargetWatch::set_path(WatchPath path) {
@@ -94,19 +109,20 @@ const WatchedTarget* TargetWatch::find(std::string_view target) const {
 }
 
 void TargetWatch::frame_done(Executor& executor, std::uint64_t index, double time_s) {
-    poll();  // before the mirrors change
+    take();  // before the mirrors change
     ++frames_;
+    index_ = index;
+    time_s_ = time_s;
     for (const std::unique_ptr<Entry>& pointer : entries_) {
         Entry& entry = *pointer;
         const std::optional<Executor::Output> output = executor.output(entry.shown.target);
         if (!output) {
             throw Error(ErrorCode::usage, entry.shown.target, "is watched, but no live pass writes it");
         }
-        if (info(output->content->format).is_depth) {
+        const PlanContent& content = *output->content;
+        if (info(content.format).is_depth) {
             throw Error(ErrorCode::usage, entry.shown.target, "holds depth, which cannot be watched");
         }
-        Request request{.key = output->key, .frame_count = frames_, .index = index, .time_s = time_s};
-        const PlanContent& content = *output->content;
         const bool same_shape = entry.shown.image.width == content.width &&
                                 entry.shown.image.height == content.height &&
                                 entry.shown.image.format == content.format;
@@ -118,6 +134,7 @@ void TargetWatch::frame_done(Executor& executor, std::uint64_t index, double tim
             entry.any = false;
             entry.shown_key = entry.asked_key = 0;
         }
+        entry.left_out = false;
         if (output->key == entry.asked_key) {
             // What is shown, or on its way, is this frame's, too.
             if (!entry.requests.empty()) {
@@ -129,31 +146,39 @@ void TargetWatch::frame_done(Executor& executor, std::uint64_t index, double tim
                 entry.shown.frame = index;
                 entry.shown.time_s = time_s;
             }
-        } else if (output->texture == nullptr) {
-            drop(entry);
-            show_clear(entry, request, clear_image(content));
-        } else if (entry.requests.size() < (path_ == WatchPath::buffered ? most_requests : 1)) {
-            const PixelRegion all(PixelRect{0, 0, content.width, content.height});
-            request.region = executor.changed(entry.asked_key, output->key).value_or(all);
-            ask(entry, executor.framebuffer(*output), *output->texture, std::move(request));
+        } else if (output->texture == nullptr || may_ask(entry)) {
+            ask(entry, executor, *output);
+        } else {
+            entry.left_out = true;
         }
-        entry.shown.frames_behind = frames_ - entry.shown_count;
+        count_age(entry);
     }
 }
 
-void TargetWatch::ask(Entry& entry, const gl::Framebuffer& source, const gl::Texture& texture,
-                      Request request) {
+bool TargetWatch::may_ask(const Entry& entry) const {
+    return entry.requests.size() < (path_ == WatchPath::buffered ? most_requests : 1);
+}
+
+/// For all that has changed since what was asked for before.
+void TargetWatch::ask(Entry& entry, Executor& executor, const Executor::Output& output) {
+    Request request{.key = output.key, .frame_count = frames_, .index = index_, .time_s = time_s_};
+    const PlanContent& content = *output.content;
+    entry.left_out = false;
+    if (output.texture == nullptr) {
+        drop(entry);
+        entry.left_out = false;
+        entry.shown.image = clear_image(content);
+        entry.asked_key = output.key;
+        show(entry, request);
+        return;
+    }
+    const gl::Framebuffer& source = executor.framebuffer(output);
+    const gl::Texture& texture = *output.texture;
+    const PixelRegion all(PixelRect{0, 0, content.width, content.height});
+    request.region = executor.changed(entry.asked_key, output.key).value_or(all);
     entry.requests.reserve(most_requests);
     if (path_ == WatchPath::buffered) {
-        const std::size_t bytes = bytes_of(request.region, entry.shown.image.format);
-        const auto fits =
-            std::ranges::find_if(free_, [&](const gl::Buffer& b) { return b.bytes() >= bytes; });
-        if (fits != free_.end()) {
-            request.buffer.emplace(std::move(*fits));
-            free_.erase(fits);
-        } else {
-            request.buffer.emplace(gl_, std::max<std::size_t>(bytes, 1), gl::BufferUsage::read_back);
-        }
+        request.buffer.emplace(take_buffer(bytes_of(request.region, entry.shown.image.format)));
         gl::set_tight_packing(gl_);
         source.bind();
         request.buffer->bind(GL_PIXEL_PACK_BUFFER);
@@ -171,6 +196,22 @@ void TargetWatch::ask(Entry& entry, const gl::Framebuffer& source, const gl::Tex
     gl_.Flush();  // else one who only polls may never see the fence reached
     entry.asked_key = request.key;
     entry.requests.push_back(std::move(request));
+}
+
+/// The smallest that is large enough. Where none is, a new one takes the place of one that is too small, so
+/// that there are never more than were under way at once.
+gl::Buffer TargetWatch::take_buffer(std::size_t bytes) {
+    std::ranges::sort(free_, {}, &gl::Buffer::bytes);
+    const auto fits = std::ranges::lower_bound(free_, bytes, {}, &gl::Buffer::bytes);
+    if (fits != free_.end()) {
+        gl::Buffer buffer = std::move(*fits);
+        free_.erase(fits);
+        return buffer;
+    }
+    if (!free_.empty()) {
+        free_.pop_back();
+    }
+    return {gl_, std::max<std::size_t>(bytes, 1), gl::BufferUsage::read_back};
 }
 
 void TargetWatch::copy_to_mirror(Entry& entry, const gl::Framebuffer& source, const gl::Texture& texture,
@@ -191,34 +232,71 @@ void TargetWatch::copy_to_mirror(Entry& entry, const gl::Framebuffer& source, co
     }
 }
 
-void TargetWatch::poll() {
+void TargetWatch::take() {
     for (const std::unique_ptr<Entry>& entry : entries_) {
-        while (!entry->requests.empty()) {
-            if (gl_.ClientWaitSync(entry->requests.front().fence, 0, 0) == GL_TIMEOUT_EXPIRED) {
-                break;
-            }
-            Request request = std::move(entry->requests.front());
-            entry->requests.erase(entry->requests.begin());
-            gl_.DeleteSync(request.fence);
-            arrive(*entry, request);
-        }
-        entry->shown.frames_behind = frames_ - entry->shown_count;
+        take_arrived(*entry);
     }
 }
 
-void TargetWatch::wait(std::uint64_t most_frames_behind) {
-    constexpr GLuint64 second = 1'000'000'000;
-    // The last frame may not have been asked for yet, while the one before it is on its way.
-    const std::uint64_t most = std::max<std::uint64_t>(most_frames_behind, 1);
-    poll();
+void TargetWatch::poll(Executor& executor) {
     for (const std::unique_ptr<Entry>& entry : entries_) {
-        while (!entry->requests.empty() && frames_ - entry->shown_count > most) {
-            if (gl_.ClientWaitSync(entry->requests.front().fence, 0, second) == GL_WAIT_FAILED) {
+        take_arrived(*entry);
+        ask_for_left_out(*entry, executor);
+    }
+}
+
+void TargetWatch::wait(Executor& executor, std::uint64_t most_frames_behind) {
+    constexpr GLuint64 second = 1'000'000'000;
+    poll(executor);
+    for (const std::unique_ptr<Entry>& entry : entries_) {
+        while (!entry->requests.empty() && (!entry->any || entry->shown.frames_behind > most_frames_behind)) {
+            const GLenum reached = gl_.ClientWaitSync(entry->requests.front().fence, 0, second);
+            if (reached == GL_WAIT_FAILED) {
                 throw Error(ErrorCode::gl, entry->shown.target, "waiting for it failed");
             }
-            poll();
+            if (reached != GL_TIMEOUT_EXPIRED) {
+                take_first(*entry);
+                ask_for_left_out(*entry, executor);
+            }
         }
     }
+}
+
+void TargetWatch::ask_for_left_out(Entry& entry, Executor& executor) {
+    if (!entry.left_out || !may_ask(entry)) {
+        return;
+    }
+    // None: what the last frame made has been given away, or lies with a plan that is gone.
+    const std::optional<Executor::Output> output = executor.output(entry.shown.target);
+    if (output && !output->imported) {
+        ask(entry, executor, *output);
+        count_age(entry);
+    }
+}
+
+void TargetWatch::take_arrived(Entry& entry) {
+    while (!entry.requests.empty() &&
+           gl_.ClientWaitSync(entry.requests.front().fence, 0, 0) != GL_TIMEOUT_EXPIRED) {
+        take_first(entry);
+    }
+    count_age(entry);
+}
+
+void TargetWatch::take_first(Entry& entry) {
+    Request request = std::move(entry.requests.front());
+    entry.requests.erase(entry.requests.begin());
+    gl_.DeleteSync(request.fence);
+    try {
+        arrive(entry, request);
+    } catch (...) {
+        // A part is missing, on which those that follow build: all of it is asked for anew.
+        entry.any = false;
+        entry.shown_key = 0;
+        entry.left_out = true;
+        drop(entry);
+        throw;
+    }
+    count_age(entry);
 }
 
 void TargetWatch::arrive(Entry& entry, Request& request) {
@@ -231,14 +309,14 @@ void TargetWatch::arrive(Entry& entry, Request& request) {
                                         : static_cast<const std::byte*>(gl_.MapBufferRange(
                                               GL_COPY_WRITE_BUFFER, 0, bytes, GL_MAP_READ_BIT));
         if (bytes != 0 && mapped == nullptr) {
-            throw Error(ErrorCode::gl, "watched target", "the driver gave no access to the pixels");
+            throw Error(ErrorCode::gl, entry.shown.target, "the driver gave no access to the pixels");
         }
         for (const PixelRect& rect : request.region.rects()) {
             place_rows(image, rect, mapped);
             mapped += static_cast<std::size_t>(rect.area()) * pixel;
         }
-        if (bytes != 0) {
-            gl_.UnmapBuffer(GL_COPY_WRITE_BUFFER);
+        if (bytes != 0 && gl_.UnmapBuffer(GL_COPY_WRITE_BUFFER) == GL_FALSE) {
+            throw Error(ErrorCode::gl, entry.shown.target, "the driver lost the pixels");
         }
         free_.push_back(*std::move(request.buffer));
     } else {
@@ -256,22 +334,16 @@ void TargetWatch::arrive(Entry& entry, Request& request) {
         }
         gl_.PixelStorei(GL_PACK_ROW_LENGTH, 0);
     }
+    show(entry, request);
+}
+
+void TargetWatch::show(Entry& entry, const Request& request) {
     entry.any = true;
     entry.shown_key = request.key;
     entry.shown_count = request.frame_count;
     entry.shown.frame = request.index;
     entry.shown.time_s = request.time_s;
-    ++entry.shown.version;
-}
-
-void TargetWatch::show_clear(Entry& entry, const Request& request, const Image& image) {
-    entry.shown.image = image;
-    entry.any = true;
-    entry.shown_key = entry.asked_key = request.key;
-    entry.shown_count = request.frame_count;
-    entry.shown.frame = request.index;
-    entry.shown.time_s = request.time_s;
-    ++entry.shown.version;
+    entry.shown.version = next_version();
 }
 
 }  // namespace viscera

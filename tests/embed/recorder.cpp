@@ -64,9 +64,30 @@ struct Recorder::Wrapped {
         current->syncs_.erase(sync);
     }
     static GLenum GLAD_API_PTR wait_sync(GLsync sync, GLbitfield flags, GLuint64 timeout_ns) {
+        current->waits_ += timeout_ns > 0 ? 1 : 0;
         return current->fences_held_ && timeout_ns == 0
                    ? GL_TIMEOUT_EXPIRED
                    : real<PFNGLCLIENTWAITSYNCPROC>("glClientWaitSync")(sync, flags, timeout_ns);
+    }
+    static void GLAD_API_PTR finish() {
+        ++current->waits_;
+        real<PFNGLFINISHPROC>("glFinish")();
+    }
+    /// With a buffer bound `pixels` is an offset, and nobody waits.
+    static void GLAD_API_PTR read_pixels(GLint x, GLint y, GLsizei width, GLsizei height, GLenum format,
+                                         GLenum type, void* pixels) {
+        GLint buffer = 0;
+        real<PFNGLGETINTEGERVPROC>("glGetIntegerv")(GL_PIXEL_PACK_BUFFER_BINDING, &buffer);
+        current->waits_ += buffer == 0 ? 1 : 0;
+        real<PFNGLREADPIXELSPROC>("glReadPixels")(x, y, width, height, format, type, pixels);
+    }
+    static void* GLAD_API_PTR map(GLenum target, GLintptr offset, GLsizeiptr bytes, GLbitfield access) {
+        current->waits_ += (access & GL_MAP_READ_BIT) != 0 ? 1 : 0;
+        return real<PFNGLMAPBUFFERRANGEPROC>("glMapBufferRange")(target, offset, bytes, access);
+    }
+    static GLboolean GLAD_API_PTR unmap(GLenum target) {
+        const GLboolean kept = real<PFNGLUNMAPBUFFERPROC>("glUnmapBuffer")(target);
+        return std::exchange(current->mapping_lost_, false) ? GLboolean{GL_FALSE} : kept;
     }
     static GLuint texture(GLuint name) {
         return name != 0 && name == current->renamed_.first ? current->renamed_.second : name;
@@ -114,6 +135,10 @@ struct Recorder::Wrapped {
             {"glFenceSync", pointer(&fence)},
             {"glDeleteSync", pointer(&delete_sync)},
             {"glClientWaitSync", pointer(&wait_sync)},
+            {"glFinish", pointer(&finish)},
+            {"glReadPixels", pointer(&read_pixels)},
+            {"glMapBufferRange", pointer(&map)},
+            {"glUnmapBuffer", pointer(&unmap)},
             {"glBindTexture", pointer(&bind_texture)},
             {"glIsTexture", pointer(&is_texture)},
             {"glFramebufferTexture2D", pointer(&attach)},

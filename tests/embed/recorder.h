@@ -31,8 +31,13 @@ class Recorder {
     /// From now on the name `seen` stands for the texture `real`: as when a driver gives the name of a
     /// deleted texture to a new one, which Mesa does not.
     void reuse_name(GLuint seen, GLuint real) { renamed_ = {seen, real}; }
-    /// From now on no fence is reached for one who does not wait for it.
-    void hold_fences() { fences_held_ = true; }
+    /// From now on no fence is reached for one who does not wait for it; or again as the driver says.
+    void hold_fences(bool held = true) { fences_held_ = held; }
+    /// Number of calls so far that wait for the GPU: glFinish, waits for fences, and reading back into
+    /// memory.
+    [[nodiscard]] std::size_t waits() const { return waits_; }
+    /// The next mapping loses what it showed.
+    void lose_mapping() { mapping_lost_ = true; }
     [[nodiscard]] int default_framebuffer_binds() const { return default_framebuffer_binds_; }
 
   private:
@@ -48,6 +53,8 @@ class Recorder {
     std::size_t made_ = 0;
     int default_framebuffer_binds_ = 0;
     bool fences_held_ = false;
+    std::size_t waits_ = 0;
+    bool mapping_lost_ = false;
     std::pair<GLuint, GLuint> renamed_{0, 0};
 };
 

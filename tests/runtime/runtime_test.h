@@ -53,7 +53,7 @@ class RuntimeTest : public GlTest {
     Renderer& renderer() {
         if (!renderer_) {
             renderer_.emplace(
-                context().proc_address(), registry_,
+                proc_ != nullptr ? proc_ : context().proc_address(), registry_,
                 RendererOptions{
                     .log = [this](LogLevel level, std::string_view text) { log().write(level, text); },
                     .shaders = reader_of(shaders_)});
@@ -82,6 +82,7 @@ class RuntimeTest : public GlTest {
     }
 
     ShaderFiles shaders_ = recipe_shaders();
+    ProcAddress proc_ = nullptr;  ///< in place of the context's
 
   private:
     Registry registry_;
