@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "effects/tissue/blood_sources.h"
+#include "engine/core/hash.h"
 #include "engine/core/log.h"
 
 namespace viscera::tissue {
@@ -16,6 +17,8 @@ constexpr std::size_t few_wounds = 16;
 constexpr double jet_drop_share = 0.25;
 // A jet's wound this close to the surface lies on it: else one a little beneath would never get out.
 constexpr double on_surface_mm = 0.5;
+// A jet's wound is sealed where its place is: as large as that is said to be.
+constexpr double jet_wound_mm = 1e-3;
 // Where drops of a jet come down no plan has looked, so that they ask for one: they wait for each other, as
 // many steps as a plan holds for, and no longer than is seen.
 constexpr double longest_landing_s = 1.0 / 30.0;
@@ -47,6 +50,34 @@ bool Bleeding::sends_jets(double from_s, double to_s) const {
     return std::ranges::any_of(wounds_, [&](const WoundParams& wound) {
         return wound.kind == BleedingKind::jet && bleeds(wound, from_s, to_s);
     });
+}
+
+std::uint64_t Bleeding::key(double from_s, double to_s) const {
+    Hash hash;
+    for (std::size_t i = 0; i < wounds_.size(); ++i) {
+        const WoundParams& wound = wounds_[i];
+        if (bleeds(wound, from_s, to_s)) {
+            hash.add(i).add(wound.position_mm).add(wound.radius_mm).add(wound.kind);
+        }
+    }
+    return hash.value();
+}
+
+std::size_t Bleeding::jet_at(const glm::vec2& uv, double from_s, double to_s) const {
+    for (std::size_t i = 0; i < std::min(places_.size(), wounds_.size()); ++i) {
+        if (wounds_[i].kind == BleedingKind::jet && places_[i].uv == uv && bleeds(wounds_[i], from_s, to_s)) {
+            return i;
+        }
+    }
+    return places_.size();
+}
+
+bool Bleeding::jets_explain(const BloodState& state, double from_s, double to_s) const {
+    const auto is_known = [&](const auto& drop) {
+        return jet_at(drop.sealed_at, from_s, to_s) < places_.size();
+    };
+    return std::ranges::all_of(state.jets.particles(), is_known) &&
+           std::ranges::all_of(state.landed, is_known);
 }
 
 void Bleeding::find_places(BloodState& state, Log& log) {
@@ -93,7 +124,7 @@ void Bleeding::update_tree() {
     }
 }
 
-void Bleeding::expect_drops(BloodState& state, int steps) const {
+void Bleeding::expect_drops(BloodState& state, int steps, bool seals) const {
     const double dt = 1.0 / liquid_.steps_per_s;
     const double from = static_cast<double>(state.step) * dt;
     const double to = from + static_cast<double>(steps) * dt;
@@ -101,9 +132,14 @@ void Bleeding::expect_drops(BloodState& state, int steps) const {
     for (std::size_t i = 0; i < std::min(places_.size(), wounds_.size()); ++i) {
         const WoundParams& wound = wounds_[i];
         // One without a rate would keep its blocks from resting.
-        if (places_[i].found && wound.kind == BleedingKind::ooze && bleeds(wound, from, to)) {
+        if (!places_[i].found || !bleeds(wound, from, to)) {
+            continue;
+        }
+        if (wound.kind == BleedingKind::ooze) {
             state.expected.add(i, places_[i].uv, wound.radius_mm,
                                DropMeter::drop_volume(wound.rate_mm3_s * dt, liquid_.drop_mm3));
+        } else if (seals) {
+            state.expected.add(i, places_[i].uv, jet_wound_mm, 0.0);
         }
     }
 }
@@ -132,10 +168,12 @@ void Bleeding::step(BloodState& state, const glm::dvec3& gravity_mm_s2, Log& log
             continue;
         }
         for (int n = 0; n < fallen.count; ++n) {
+            const bool expected = state.expected.covers(i, uv, wound.radius_mm, fallen.volume_mm3);
             drops.push_back({.uv = uv,
                              .volume_mm3 = static_cast<float>(fallen.volume_mm3),
                              .radius_mm = static_cast<float>(wound.radius_mm),
-                             .expected = state.expected.covers(i, uv, wound.radius_mm, fallen.volume_mm3)});
+                             .expected = expected,
+                             .foreseen = expected});
         }
     }
     if (state.jets.refused() > refused) {
@@ -147,7 +185,12 @@ void Bleeding::step(BloodState& state, const glm::dvec3& gravity_mm_s2, Log& log
     fly(state, gravity_mm_s2);
     const auto wait = static_cast<std::int64_t>(longest_landing_s / dt + 1e-6);
     if (state.step % std::clamp<std::int64_t>(wait, 1, BloodBlocks::steps_per_plan) == 0) {
-        drops.insert(drops.end(), state.landed.begin(), state.landed.end());
+        for (DropSpawn& drop : state.landed) {
+            const std::size_t jet = jet_at(drop.sealed_at, time - 0.5 * dt, time + 0.5 * dt);
+            drop.foreseen =
+                jet < places_.size() && state.expected.covers(jet, drop.sealed_at, jet_wound_mm, 0.0);
+            drops.push_back(drop);
+        }
         state.landed.clear();
     }
     for (DropSpawn& drop : drops) {
@@ -161,8 +204,7 @@ void Bleeding::fly(BloodState& state, const glm::dvec3& gravity_mm_s2) {
     }
     update_tree();
     state.jets.step(tree_, gravity_mm_s2, 1.0 / liquid_.steps_per_s, state.landed);
-    state.bled = true;
-    state.stir();
+    state.bled = state.moving = true;
 }
 
 }  // namespace viscera::tissue

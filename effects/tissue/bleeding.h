@@ -32,10 +32,16 @@ class Bleeding {
     /// Whether one sends out a jet then.
     [[nodiscard]] bool sends_jets(double from_s, double to_s) const;
 
+    /// Another one whenever other wounds bleed then, or bleed elsewhere.
+    [[nodiscard]] std::uint64_t key(double from_s, double to_s) const;
+    /// Whether all that is in the air is from jets that bleed then.
+    [[nodiscard]] bool jets_explain(const BloodState& state, double from_s, double to_s) const;
+
     /// Before steps: finds where wounds lie, of those that are new or whose surface has moved.
     void find_places(BloodState& state, Log& log);
-    /// Where drops may appear in so many steps from the state's own on.
-    void expect_drops(BloodState& state, int steps) const;
+    /// Where drops may appear in so many steps from the state's own on. `seals`: energy may close wounds,
+    /// those of jets, too, whose drops appear anywhere.
+    void expect_drops(BloodState& state, int steps, bool seals) const;
     /// What falls from wounds in a step, and what comes down of jets, which fly on under a gravity [mm/s^2].
     void step(BloodState& state, const glm::dvec3& gravity_mm_s2, Log& log, std::vector<DropSpawn>& drops);
 
@@ -49,6 +55,8 @@ class Bleeding {
         glm::dvec3 start_mm{0.0};  ///< of a jet
         glm::vec2 uv{0.0F};
     };
+    /// The jet that bleeds then and whose wound has this UV; none: places_.size().
+    [[nodiscard]] std::size_t jet_at(const glm::vec2& uv, double from_s, double to_s) const;
     void update_tree();
     void fly(BloodState& state, const glm::dvec3& gravity_mm_s2);
 

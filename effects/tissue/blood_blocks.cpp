@@ -157,7 +157,15 @@ void BloodBlocks::mark_alive(const Pass& pass, const BloodMedium& medium, const 
         pass.draw_generated(GL_POINTS, blood.groups.count() * points_per_drop, 1);
     }
     if (expected_count_ > 0) {
-        (void)begin_mark(pass, medium, BloodShader::mark_of_places, expected_.texture());
+        const bool energy = pass.has("energy");
+        const gl::Program& program = begin_mark(
+            pass, medium, energy ? BloodShader::mark_of_places_energy : BloodShader::mark_of_places,
+            expected_.texture());
+        if (energy) {
+            pass.bind(program, "u_energy", "energy");
+            bind(pass, program, "u_film", blood.film);
+            program.set("u_sealed", medium.sealed_energy);
+        }
         pass.draw_generated(GL_POINTS, expected_count_ * points_per_drop, 1);
     }
 }

@@ -67,7 +67,8 @@ class BloodBlocks {
     [[nodiscard]] int rows() const { return std::max((listed_ + in_row - 1) / in_row, 1); }
     /// Nothing is known yet; `everywhere`: blood may be anywhere.
     void begin(const Pass& pass, bool everywhere);
-    /// Where drops may appear before the next look: UV, and the volume of a drop as large as the place.
+    /// Where drops may appear before the next look: UV, the volume of a drop as large as the place, and the
+    /// radius around the UV in which they do [mm]. Where all of that is sealed by energy nothing is stepped.
     void expect(std::span<const glm::vec4> places);
     /// Finds out what has happened in each block. `wake`: whatever shows blood is to be stepped.
     void look(const Pass& pass, const BloodMedium& medium, const Blood& blood, bool wake);

@@ -20,6 +20,8 @@ namespace {
 constexpr double longest_gap_s = 0.5;
 constexpr double smallest_drop_share = 0.02;
 constexpr double latest_s = 1.0e9;
+// Half a second or so, in which nobody misses what is not saved.
+constexpr std::uint64_t looks_per_question = 8;
 
 std::int64_t step_at(double time_s, double steps_per_s) {
     // A frame's time that should lie on the grid may miss it by its own rounding.
@@ -153,15 +155,46 @@ Work BloodEffect::prepare(Prepare& prepare) {
         state.step = target_step_;
         return Work::idle("there is no blood");
     }
-    const bool disturbed = state.moving || state.woken || runs || tools_work(first, last) ||
+    source_key_ = Hash()
+                      .add(bleeding_.key(first, last))
+                      .add(runs ? prepare.content("energy") : 0)
+                      .add(params_.sealed_energy)
+                      .value();
+    const bool sealed = runs && !state.moving && state.sealed_key == source_key_;
+    const bool disturbed = state.moving || state.woken || (runs && !sealed) || tools_work(first, last) ||
                            state.tool_count > 0 || surface_key_ != state.surface_key;
     if (!disturbed) {
-        state.step = target_step_;
+        let_time_pass(sealed, prepare.log());
+    }
+    if (last > first) {
+        state.sealed = sealed && !disturbed;
     }
     const bool steps = target_step_ > state.step;
     const std::uint64_t key =
         Hash().add(parameters_key_).add(state.version + (steps ? 1 : 0)).add(surface_key_).value();
     return disturbed ? Work::go_on(key) : Work::rest("all blood stands still", key);
+}
+
+/// Steps in which the GPU has nothing to do. Wounds that are sealed go on dripping nothing, so that others
+/// find them as if they had been watched.
+void BloodEffect::let_time_pass(bool sealed, Log& log) {
+    BloodState& state = *state_;
+    if (sealed) {
+        bleeding_.find_places(state, log);
+        for (state.step = std::max(state.step, target_step_ - longest_gap()); state.step < target_step_;
+             ++state.step) {
+            bleeding_.step(state, gravity_mm_s2(), log, spawns_);
+            const auto most = static_cast<std::size_t>(state.gpu->capacity());
+            for (std::size_t first = 0; first < spawns_.size(); first += most) {
+                const std::size_t count = std::min(most, spawns_.size() - first);
+                (void)state.ring.add(static_cast<std::int64_t>(count), state.gpu->capacity());
+            }
+        }
+        state.moving = false;
+        // The next step looks, whenever that is.
+        state.steps_since_look = BloodBlocks::steps_per_look;
+    }
+    state.step = target_step_;
 }
 
 std::int64_t BloodEffect::longest_gap() const {
@@ -240,7 +273,7 @@ void BloodEffect::wake(const Pass& pass) {
 
 void BloodEffect::look(const Pass& pass, bool wake) {
     BloodState& state = *state_;
-    bleeding_.expect_drops(state, BloodBlocks::steps_per_look);
+    bleeding_.expect_drops(state, BloodBlocks::steps_per_look, pass.has("energy"));
     state.gpu->expect(state.expected.places());
     state.gpu->look_at_tiles(pass, medium_, state.ring, wake);
     state.looked_at = state.step;
@@ -266,8 +299,11 @@ void BloodEffect::spawn(const Pass& pass) {
             drops[i].slot = static_cast<float>((head + static_cast<std::int64_t>(i)) % capacity);
         }
         state.gpu->spawn(pass, medium_, drops, evicted);
-        state.bled = true;
-        state.stir();
+        state.bled = state.moving = true;
+        // Whether any comes of those that the last look foresaw is what the answer to it says.
+        if (!std::ranges::all_of(drops, &DropSpawn::foreseen)) {
+            state.stir();
+        }
     }
 }
 
@@ -310,24 +346,43 @@ void BloodEffect::draw(const Pass& pass) {
         wake(pass);
     }
     if (target_step_ > state.step) {
+        if (std::exchange(state.source_key, source_key_) != source_key_) {
+            state.stir();
+        }
         state.step = std::max(state.step, target_step_ - longest_gap());
         while (state.step < target_step_) {
             run_step(pass);
         }
         ++state.version;
-        if (const auto still = state.gpu->all_still();
-            still && *still >= state.disturbed_at && state.jets.particles().empty() && state.landed.empty()) {
-            state.moving = false;
-            state.ring.clear();
-        }
-        // Only where nothing bleeds: what comes back is a picture in memory.
-        const double now = static_cast<double>(target_step_) / state.steps_per_s;
-        if (state.moving && !bleeding_.bleeds(now - 1.0 / state.steps_per_s, now) &&
-            state.looks >= state.disturbed_at) {
-            state.gpu->ask_tiles(state.looks);
-        }
+        see_whether_it_rests(pass.has("energy"));
     }
     show(pass);
+}
+
+void BloodEffect::see_whether_it_rests(bool seals) {
+    BloodState& state = *state_;
+    const double now = static_cast<double>(target_step_) / state.steps_per_s;
+    const double before = now - 1.0 / state.steps_per_s;
+    const bool bleeds = bleeding_.bleeds(before, now);
+    const std::optional<std::uint64_t> still = state.gpu->all_still();
+    if (bleeds ? !seals || !bleeding_.jets_explain(state, before, now)
+               : !state.jets.particles().empty() || !state.landed.empty()) {
+        return;
+    }
+    if (still && *still >= state.disturbed_at) {
+        state.moving = false;
+        if (bleeds) {
+            state.sealed_key = source_key_;
+        } else {
+            state.ring.clear();
+        }
+    }
+    // What comes back is a picture in memory: while wounds bleed it is asked for now and then.
+    const bool due = !bleeds || state.looks >= state.asked_look + looks_per_question;
+    if (state.moving && due && state.looks >= state.disturbed_at) {
+        state.asked_look = state.looks;
+        state.gpu->ask_tiles(state.looks);
+    }
 }
 
 void BloodEffect::show(const Pass& pass) {

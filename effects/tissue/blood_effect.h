@@ -31,6 +31,9 @@ class BloodEffect final : public Effect {
     void check_inputs(Prepare& prepare);
     void spawn(const Pass& pass);
     void take_liquid();
+    void let_time_pass(bool sealed, Log& log);
+    /// After steps. `seals`: energy may close wounds.
+    void see_whether_it_rests(bool seals);
     /// Steps that a gap between frames may have.
     [[nodiscard]] std::int64_t longest_gap() const;
     /// Whether a tool works between two times [s].
@@ -56,6 +59,7 @@ class BloodEffect final : public Effect {
     std::int64_t target_step_ = 0;
     std::uint64_t shown_version_ = 0;  ///< of the blood that this pass drew last
     std::uint64_t liquid_key_ = 0;
+    std::uint64_t source_key_ = 0;  ///< of the wounds that bleed in this frame, and of the energy
     Bleeding bleeding_;
     std::vector<CleanerParams> tools_;
     std::vector<DropSpawn> spawns_;

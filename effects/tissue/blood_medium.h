@@ -31,6 +31,7 @@ struct DropSpawn {
     /// UV of the tissue that decides whether it comes; negative: the place in which it appears does.
     glm::vec2 sealed_at{-1.0F};
     bool expected = false;  ///< the blocks there are known to be stepped: BloodBlocks::expect()
+    bool foreseen = false;  ///< the wound that it is from was expected to bleed at the last look
 };
 
 }  // namespace viscera::tissue

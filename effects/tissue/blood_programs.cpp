@@ -35,6 +35,7 @@ std::vector<ProgramDesc> blood_programs() {
             {whole, "tissue/blood_near.frag", {}},
             {"tissue/blood_mark.vert", "tissue/blood_mark.frag", {}},
             {"tissue/blood_mark.vert", "tissue/blood_mark.frag", {"PLACES"}},
+            {"tissue/blood_mark.vert", "tissue/blood_mark.frag", {"PLACES", "ENERGY"}},
             {whole, "tissue/blood_across.frag", {}},
             {tile, "tissue/blood_copy.frag", {"SETTLED"}},
             {whole, "tissue/blood_copy.frag", {}},

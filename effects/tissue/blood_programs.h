@@ -43,6 +43,7 @@ enum class BloodShader : std::size_t {
     near,
     mark_of_drops,
     mark_of_places,
+    mark_of_places_energy,
     across,
     settle,
     copy,

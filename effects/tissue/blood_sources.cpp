@@ -165,7 +165,7 @@ void ExpectedDrops::add(std::size_t wound, const glm::vec2& uv, double radius_mm
     const double reach = reach_mm(radius_mm, drop_mm3);
     by_wound_[wound] = {uv, reach};
     places_.emplace_back(uv, static_cast<float>(0.5 * std::numbers::pi * aspect_ * reach * reach * reach),
-                         0.0F);
+                         static_cast<float>(radius_mm));
 }
 
 bool ExpectedDrops::covers(std::size_t wound, const glm::vec2& uv, double radius_mm, double drop_mm3) const {

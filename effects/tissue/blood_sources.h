@@ -64,7 +64,8 @@ class ExpectedDrops {
     void add(std::size_t wound, const glm::vec2& uv, double radius_mm, double drop_mm3);
     [[nodiscard]] bool covers(std::size_t wound, const glm::vec2& uv, double radius_mm,
                               double drop_mm3) const;
-    /// As the shaders read them: drops as large as the places, u, v, volume [mm^3], 0.
+    /// As the shaders read them: drops as large as the places, u, v, volume [mm^3], and radius of
+    /// the wound [mm].
     [[nodiscard]] std::span<const glm::vec4> places() const { return places_; }
 
   private:

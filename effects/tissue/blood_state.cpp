@@ -18,7 +18,8 @@ double BloodState::flying_mm3() const {
 
 void BloodState::begin_anew(std::int64_t at, double rate) {
     begun = true;
-    bled = moving = woken = there = false;
+    bled = moving = woken = there = sealed = false;
+    source_key = sealed_key = asked_look = 0;
     step = at;
     steps_per_s = rate;
     surface_key = 0;

@@ -17,11 +17,15 @@ namespace viscera::tissue {
 struct BloodState {
     std::unique_ptr<BloodGpu> gpu;
     bool begun = false;
-    bool bled = false;      ///< blood is or was somewhere
-    bool moving = false;    ///< something may change without a source
-    bool woken = false;     ///< what rests is to be stepped again
-    bool there = false;     ///< there is blood to show or to account for
-    std::int64_t step = 0;  ///< the next one, on the grid of times
+    bool bled = false;    ///< blood is or was somewhere
+    bool moving = false;  ///< something may change without a source
+    bool woken = false;   ///< what rests is to be stepped again
+    bool there = false;   ///< there is blood to show or to account for
+    bool sealed = false;  ///< wounds would bleed if energy had not closed them all, and all else rests
+    std::uint64_t source_key = 0;  ///< of the wounds that bled in the last steps, and of the energy
+    std::uint64_t sealed_key = 0;  ///< the same, of which it is known that nothing comes
+    std::uint64_t asked_look = 0;  ///< the last one about which the GPU was asked
+    std::int64_t step = 0;         ///< the next one, on the grid of times
     double steps_per_s = 0.0;
     std::uint64_t version = 0;  ///< of what it shows
     std::uint64_t shown_version =

@@ -83,6 +83,9 @@ Work JetEffect::prepare(Prepare& prepare) {
     if (state_->jets.particles().empty() && !state_->jets_bleed) {
         return Work::idle("no blood is in the air");
     }
+    if (state_->sealed) {
+        return Work::idle("all wounds are sealed");
+    }
     const View& view = prepare.frame().eye();
     return Work::all(Hash()
                          .add(prepare.parameters_key())

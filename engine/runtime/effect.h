@@ -129,6 +129,8 @@ class Prepare {
     /// What a port's content belongs to, as its writer has said this frame (Work::subject); 0: unknown. With
     /// it a reader tells a target that was made for another thing than its own.
     [[nodiscard]] virtual std::uint64_t subject(std::string_view port) const = 0;
+    /// Another one whenever what a port reads may be another picture; 0 where it has no content.
+    [[nodiscard]] virtual std::uint64_t content(std::string_view port) const = 0;
     /// Size of a port's target [pixels]; {0, 0} for an unbound port.
     [[nodiscard]] virtual glm::ivec2 size(std::string_view port) const = 0;
 };

@@ -84,6 +84,10 @@ class Executor::FramePrepare final : public Prepare {
         return binding == nullptr || !binding->content ? 0 : executor_.subjects_[*binding->content];
     }
 
+    std::uint64_t content(std::string_view port) const override {
+        return has(port) ? executor_.schedule_.contents()[*find(port)->content].key : 0;
+    }
+
   private:
     const PlanBinding* find(std::string_view port) const {
         const auto& bindings = executor_.plan_.passes[pass_].bindings;

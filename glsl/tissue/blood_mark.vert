@@ -7,7 +7,7 @@
 #include "tissue/drop_ring.glsl"
 #endif
 // Marks the blocks that drops reach, by two points for each drop.
-uniform sampler2D u_drops;  // with PLACES: a list of drops to come, each as large as the place where it may
+uniform sampler2D u_drops;  // with PLACES: a list of drops to come, each as large as the place where it may, w: radius of its wound [mm]
 uniform sampler2D u_metric;
 uniform sampler2D u_gravity;
 uniform ivec2 u_block_count;
@@ -16,6 +16,24 @@ uniform vec4 u_flow;
 uniform float u_strength;
 uniform float u_steps;  // until drops are marked again
 flat out float v_mark;
+#ifdef ENERGY
+uniform sampler2D u_energy;
+uniform sampler2D u_film;
+uniform float u_sealed;  // energy at which tissue no longer bleeds
+
+// Whether nothing can come: all tissue in which blood_spawn.vert may put a drop is sealed. What lies across a seam it does not look at.
+bool is_sealed(vec2 at, vec2 reach) {
+    ivec2 low = ivec2(floor(at - reach));
+    ivec2 high = ivec2(floor(at + reach));
+    bool all_sealed = textureSize(u_energy, 0) == textureSize(u_film, 0);
+    for (int y = low.y; all_sealed && y <= high.y; ++y) {
+        for (int x = low.x; all_sealed && x <= high.x; ++x) {
+            all_sealed = texel_at(u_film, ivec2(x, y)).w > 0.0 && texel_at(u_energy, ivec2(x, y)).r >= u_sealed;
+        }
+    }
+    return all_sealed;
+}
+#endif
 
 void main() {
     gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
@@ -35,6 +53,11 @@ void main() {
         float sine = sqrt(max(1.0 - metric.z * metric.z, 0.0025));
         float radius = drop_radius(drop.z);
         vec2 extent = min(radius / (max(metric.xy, vec2(1e-12)) * sine) + 1.0, vec2(48.0));
+#ifdef ENERGY
+        if (is_sealed(at, min(drop.w / (max(metric.xy, vec2(1e-12)) * sine), vec2(12.0)))) {
+            return;
+        }
+#endif
         vec2 way = vec2(0.0);
         if ((gl_VertexID & 1) > 0) {
             // And where it may come to before it is marked again, as fast as in blood_move.frag, with the film that it leaves, which

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/io/exr.h"
+#include "tests/effects/scenes.h"
 #include "tests/tissue/blood_stage.h"
 
 // What lets blood rest, and what wakes it.
@@ -106,6 +108,107 @@ TEST(BloodRest, AToolThatWorksBetweenTwoFramesIsNotMissed) {
         const Image picture = stage.read("tissue.blood_height");
         EXPECT_TRUE(heights.empty() || heights == picture.data);
         heights = picture.data;
+    }
+}
+
+/// Wounds in tissue that is burnt but for a stripe at the right.
+class SealedWounds : public testing::Test {
+  protected:
+    static constexpr std::array<float, 12> ooze{20.0F, 40.0F, 0.0F, 1.5F, 60.0F, 0.0F,
+                                                0.0F,  0.0F,  1.0F, 0.0F, 0.0F,  0.0F};
+    static constexpr std::array<float, 12> jet{30.0F, 40.0F, 0.0F, 0.5F,   200.0F, 1.0F,
+                                               0.0F,  0.3F,  1.0F, 300.0F, 0.0F,   0.0F};
+    static constexpr std::array<float, 12> open{54.0F, 40.0F, 0.0F, 1.0F, 60.0F, 0.0F,
+                                                0.0F,  0.0F,  1.0F, 0.0F, 0.0F,  0.0F};
+
+    std::string energy_file(BloodStage& stage, const char* name, float burnt) {
+        Image image = make_image(64, 64, PixelFormat::rgba32f);
+        for (int y = 0; y < 64; ++y) {
+            for (int x = 0; x < 64; ++x) {
+                for (int c = 0; c < 4; ++c) {
+                    image.set(x, y, c, x < 48 ? burnt : 0.0F);
+                }
+            }
+        }
+        const io::ExrPart part{.name = "energy", .image = image};
+        io::write_exr(stage.folder / name, std::span(&part, 1));
+        return (stage.folder / name).string();
+    }
+    void set(BloodStage& stage) {
+        set_still_film(stage);
+        stage.more.push_back(
+            pass("energy", "picture.image",
+                 {{"file", energy_file(stage, "burnt.exr", 1.0F)}, {"fit", "stretch"}, {"monochrome", false}},
+                 {{"image", "tissue.energy"}}));
+        stage.load();
+    }
+    static HostValues wounds(std::initializer_list<std::array<float, 12>> of) {
+        std::vector<float> all;
+        for (const auto& wound : of) {
+            all.insert(all.end(), wound.begin(), wound.end());
+        }
+        HostValues values;
+        values.set("tissue.blood_emitters", all);
+        return values;
+    }
+};
+
+TEST_F(SealedWounds, LetBloodRest) {
+    BloodStage stage(64);
+    set(stage);
+    const HostValues sealed = wounds({ooze, jet});
+    wait_for_rest(stage, &sealed);
+    const double lay = stage.account().film;
+    EXPECT_TRUE(idle(stage.frame(stage.time_s() + 0.25, &sealed)));
+    EXPECT_TRUE(idle(stage.frame(stage.time_s() + 3.0, &sealed))) << "it goes on resting";
+    EXPECT_EQ(stage.account().film, lay);
+    EXPECT_EQ(highest(stage), static_cast<float>(film_mm));
+
+    // One that is not sealed bleeds.
+    const HostValues another = wounds({ooze, jet, open});
+    EXPECT_FALSE(idle(stage.frame(stage.time_s() + 0.25, &another)));
+    stage.run(stage.time_s(), stage.time_s() + 1.0, 0.25, &another);
+    EXPECT_GT(stage.account().film + stage.account().drops, lay + 30.0);
+    for (int i = 0; i < 12; ++i) {
+        EXPECT_FALSE(idle(stage.frame(stage.time_s() + 0.25, &another))) << "for as long as it does";
+    }
+}
+
+TEST_F(SealedWounds, BleedAgainWhereEnergyIsTakenAway) {
+    BloodStage stage(64);
+    set(stage);
+    const HostValues sealed = wounds({ooze});
+    wait_for_rest(stage, &sealed);
+    const double lay = stage.account().film;
+    stage.stage().renderer().set_parameter("energy", "/file", energy_file(stage, "fresh.exr", 0.0F));
+    EXPECT_FALSE(idle(stage.frame(stage.time_s() + 0.25, &sealed)));
+    stage.run(stage.time_s(), stage.time_s() + 1.0, 0.25, &sealed);
+    EXPECT_GT(stage.account().film + stage.account().drops, lay + 30.0);
+}
+
+TEST_F(SealedWounds, LeaveNoTraceOfWhenTheyWereFoundOut) {
+    // At other frame rates the answer comes at another time.
+    std::vector<std::vector<std::byte>> heights;
+    for (const double step : {0.25, 1.0 / 24.0}) {
+        BloodStage stage(64);
+        set(stage);
+        const HostValues sealed = wounds({ooze, jet});
+        stage.run(0.0, 6.0, step, &sealed);
+        EXPECT_TRUE(idle(stage.frame(6.0, &sealed)));
+        const HostValues another = wounds({ooze, jet, open});
+        stage.run(6.0, 8.0, step, &another);
+        heights.push_back(stage.read("tissue.blood_height").data);
+    }
+    EXPECT_EQ(heights[0], heights[1]);
+}
+
+TEST_F(SealedWounds, WithoutEnergyTheSameWoundsBleedOn) {
+    BloodStage stage(64);
+    set_still_film(stage);
+    const HostValues same = wounds({ooze, jet});
+    stage.run(0.0, 5.0, 0.25, &same);
+    for (int i = 0; i < 8; ++i) {
+        EXPECT_FALSE(idle(stage.frame(stage.time_s() + 0.25, &same)));
     }
 }
 

@@ -36,6 +36,7 @@ class Preparation final : public Prepare {
     std::uint64_t parameters_key() const override { return 1; }
     bool has(std::string_view) const override { return true; }
     std::uint64_t subject(std::string_view) const override { return 0; }
+    std::uint64_t content(std::string_view) const override { return 1; }
     glm::ivec2 size(std::string_view) const override { return glm::ivec2(test::size); }
 
   private:
