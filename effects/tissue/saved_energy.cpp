@@ -64,7 +64,8 @@ void SavedEnergyParams::visit(ParamVisitor& v) {
 
 std::shared_ptr<const SavedEnergy> load_energy(Assets& assets, const SavedEnergyParams& params, int size) {
     const std::string name = params.file.path.string();
-    const std::uint64_t key = Hash().add(assets.file_key(params.file.path)).add(params.time_s.value_or(-1.0)).add(size).value();
+    const std::uint64_t key =
+        Hash().add(assets.file_key(params.file.path)).add(params.time_s.value_or(-1.0)).add(size).value();
     return assets.shared<SavedEnergy>(key, [&] {
         const std::vector<io::ExrPart> parts = io::read_exr(params.file.path);
         const io::ExrPart& part = energy_of(parts, name);

@@ -79,6 +79,14 @@ class OrganAccuracy : public testing::Test {
         s.organ.slopes = {.picture = slopes, .repeats = true, .repeat = repeat};
         s.organ.bump = strength;
     }
+    void use_bruise() {
+        s.parameters["hematoma"] = {{"spots", {{{"centre", {5, -8, 3}}, {"radius", 14}}}},
+                                    {"colour", {0.2, 0.05, 0.1}},
+                                    {"strength", 0.75}};
+        s.organ.hematoma_colour = {0.2, 0.05, 0.1};
+        s.organ.hematoma_strength = 0.75;
+        s.organ.spots = {{5, -8, 3, 14}};
+    }
     void use_energy() {
         feed("tissue.energy", s.organ.energy,
              [](double u, double v, int) { return static_cast<float>(1.6 * u * u - 0.9 * v); });
@@ -191,12 +199,7 @@ TEST_F(OrganAccuracy, BackFaces) {
 TEST_F(OrganAccuracy, PlacedTurnedStretchedAndMirrored) {
     // Steep parts are seen small, but not so small that texels of a map that repeats so little are.
     use_normal_map(0.8, 0.4);
-    s.parameters["hematoma"] = {{"spots", {{{"centre", {5, -8, 3}}, {"radius", 14}}}},
-                                {"colour", {0.2, 0.05, 0.1}},
-                                {"strength", 0.75}};
-    s.organ.hematoma_colour = {0.2, 0.05, 0.1};
-    s.organ.hematoma_strength = 0.75;
-    s.organ.spots = {{5, -8, 3, 14}};
+    use_bruise();
     for (const double mirror : {1.0, -1.0}) {
         s.parameters["mesh"]["placement"] = {
             {"move_mm", {2, -4, 3}}, {"rotate_deg", {14, -20, 35}}, {"scale", {mirror * 0.9, 1.6, 1.1}}};
@@ -422,12 +425,7 @@ TEST_F(OrganAccuracy, EverythingAtOnce) {
                             })}};
     s.parameters["hint"] = {{"map", file("hint.exr", s.organ.hint)}, {"strength", 0.5}, {"period_s", 0}};
     s.organ.hint_share = 0.5;
-    s.parameters["hematoma"] = {{"spots", {{{"centre", {5, -8, 3}}, {"radius", 14}}}},
-                                {"colour", {0.2, 0.05, 0.1}},
-                                {"strength", 0.75}};
-    s.organ.hematoma_colour = {0.2, 0.05, 0.1};
-    s.organ.hematoma_strength = 0.75;
-    s.organ.spots = {{5, -8, 3, 14}};
+    use_bruise();
     s.parameters["focus"] = {{"near_mm", 60}, {"focus_mm", 92}, {"far_mm", 125}};
     s.organ.focus = reference::Focus{60, 92, 125, 1.0, 1.0};
     expect("everything at once");
