@@ -152,9 +152,14 @@ TEST_F(Thickness, DoesNotLookHowTrianglesAreWound) {
     nodes_ = edges_ = inlets_ = outlets_ = json::array();
     add_cylinder(20.0, true);
     const Image inward = picture(10.0);
+    EXPECT_NE(outward.data, inward.data) << "other triangles, other roundings";
+    // Depths of 200 mm lie 1.5e-5 mm apart as floats, and each of two walls may come out as either neighbour.
+    const auto bound = static_cast<float>(2.0 * 2.0 * 1.5e-5 / calibre_mm);
     for (int y = 0; y < side; ++y) {
         for (int x = 0; x < side; ++x) {
-            ASSERT_NEAR(outward.at(x, y, 0), inward.at(x, y, 0), 2e-6F);
+            // At the outline walls are steep, and where a triangle lies is rounded, too.
+            const bool steep = outward.at(x, y, 0) < 0.1F;
+            ASSERT_NEAR(outward.at(x, y, 0), inward.at(x, y, 0), steep ? 4.0F * bound : bound);
         }
     }
 }

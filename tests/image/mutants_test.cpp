@@ -298,7 +298,7 @@ constexpr Mutant mutants[] = {
      "coagulate"},
     {"EnergyForgotten", "tissue_energy", "tissue/energy_store.glsl", "u_keep * textureLod",
      "0.99 * u_keep * textureLod", "coagulate"},
-    {"EnergyTiles", "tissue_energy", "tissue/coagulate.vert", "tile.xy + corner", "tile.xy + 0.9 * corner",
+    {"EnergyTiles", "tissue_energy", "tissue/coagulate.vert", "place + corner", "place + 0.9 * corner",
      "coagulate"},
     {"BipolarShape", "tissue_energy", "tissue/bipolar.frag", "dot(p, p) < u_size_mm.z",
      "dot(p, p) < 0.8 * u_size_mm.z", "bipolar"},
