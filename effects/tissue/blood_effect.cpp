@@ -365,6 +365,11 @@ void BloodEffect::see_whether_it_rests(bool seals) {
     const double before = now - 1.0 / state.steps_per_s;
     const bool bleeds = bleeding_.bleeds(before, now);
     const std::optional<std::uint64_t> still = state.gpu->all_still();
+    // What comes back is a picture in memory: while wounds bleed it is asked for now and then.
+    const bool due = !bleeds || state.looks >= state.asked_look + looks_per_question;
+    if (!still && !due) {
+        return;  // before all that is in the air is looked at
+    }
     if (bleeds ? !seals || !bleeding_.jets_explain(state, before, now)
                : !state.jets.particles().empty() || !state.landed.empty()) {
         return;
@@ -377,8 +382,6 @@ void BloodEffect::see_whether_it_rests(bool seals) {
             state.ring.clear();
         }
     }
-    // What comes back is a picture in memory: while wounds bleed it is asked for now and then.
-    const bool due = !bleeds || state.looks >= state.asked_look + looks_per_question;
     if (state.moving && due && state.looks >= state.disturbed_at) {
         state.asked_look = state.looks;
         state.gpu->ask_tiles(state.looks);

@@ -79,6 +79,12 @@ class OrganAccuracy : public testing::Test {
         s.organ.slopes = {.picture = slopes, .repeats = true, .repeat = repeat};
         s.organ.bump = strength;
     }
+    void use_membrane() {
+        s.parameters["blending"] = "blended";
+        s.parameters["opacity"] = 0.45;
+        s.organ.blended = true;
+        s.organ.opacity = 0.45;
+    }
     void use_bruise() {
         s.parameters["hematoma"] = {{"spots", {{{"centre", {5, -8, 3}}, {"radius", 14}}}},
                                     {"colour", {0.2, 0.05, 0.1}},
@@ -367,10 +373,7 @@ TEST_F(OrganAccuracy, Membrane) {
     s.camera["eye_mm"] = {60, -70, 23};
     feed("organ.diffuse", s.organ.diffuse);  // which has no smaller copies for edges to be seen in
     s.organ.colour = glm::dvec3(1.0);
-    s.parameters["blending"] = "blended";
-    s.parameters["opacity"] = 0.45;
-    s.organ.blended = true;
-    s.organ.opacity = 0.45;
+    use_membrane();
     expect("membrane");
     s.parameters["focus"] = {{"near_mm", 60}, {"focus_mm", 92}, {"far_mm", 125}};
     s.organ.focus = reference::Focus{60, 92, 125, 1.0, 1.0};
@@ -381,20 +384,14 @@ TEST_F(OrganAccuracy, MembraneWhoseMapHasHolesAndMore) {
     feed("organ.diffuse", s.organ.diffuse,
          [](double u, double v, int c) { return c == 3 ? 3.0F * wave(u, v, c) - 1.0F : wave(u, v, c); });
     s.organ.colour = glm::dvec3(1.0);
-    s.parameters["blending"] = "blended";
-    s.parameters["opacity"] = 0.45;
-    s.organ.blended = true;
-    s.organ.opacity = 0.45;
+    use_membrane();
     expect("membrane, alpha from -1 to 2");
 }
 
 TEST_F(OrganAccuracy, MembraneOfOneSide) {
     s.use_mesh(patch_obj({.cells = 14, .bend_mm = 40.0}));
     s.camera["eye_mm"] = {60, -70, 23};
-    s.parameters["blending"] = "blended";
-    s.parameters["opacity"] = 0.45;
-    s.organ.blended = true;
-    s.organ.opacity = 0.45;
+    use_membrane();
     const Image both = s.render();
     for (const char* faces : {"front", "back"}) {
         s.parameters["faces"] = faces;
