@@ -48,9 +48,11 @@ std::vector<Entry> entries_of(const fs::path& folder) {
     const auto now = fs::file_time_type::clock::now();
     std::error_code error;
     for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
-        std::error_code gone;
-        const Entry entry{at->path(), at->last_write_time(gone), at->file_size(gone)};
-        if (gone) {
+        // Two questions to the file system, which others may change in between: each has its own answer.
+        std::error_code no_time;
+        std::error_code no_size;
+        const Entry entry{at->path(), at->last_write_time(no_time), at->file_size(no_size)};
+        if (no_time || no_size) {
             continue;
         }
         const std::string name = entry.file.filename().string();
@@ -58,7 +60,8 @@ std::vector<Entry> entries_of(const fs::path& folder) {
             entries.push_back(entry);
         } else if (name.find(extension) != std::string::npos && name.ends_with(unfinished) &&
                    now - entry.used > abandoned_after) {
-            fs::remove(entry.file, gone);
+            std::error_code ignored;  // another process may have been faster
+            fs::remove(entry.file, ignored);
         }
     }
     std::ranges::sort(entries, {}, &Entry::used);

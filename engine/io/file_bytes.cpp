@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <random>
 #include <system_error>
 #include <utility>
 
@@ -56,13 +57,14 @@ class Unfinished {
     bool finished_ = false;
 };
 
-/// Opens a new file beside the final one, under a name that no other thread or process is using; gives that
-/// name.
+/// Opens a new file beside the final one, under a name of its own; gives that name. Names are drawn, so that
+/// none comes twice: whoever still knows one from before (to remove it, say) cannot hit another's file.
 std::pair<int, std::filesystem::path> open_beside(const std::filesystem::path& file) {
     constexpr int most_tries = 1000;
+    std::random_device draw;
     for (int n = 0;; ++n) {
         std::filesystem::path beside = file;
-        beside.replace_filename("." + file.filename().string() + "." + std::to_string(n) + ".part");
+        beside.replace_filename("." + file.filename().string() + "." + std::to_string(draw()) + ".part");
         const int descriptor = ::open(beside.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (descriptor >= 0) {
             return {descriptor, std::move(beside)};

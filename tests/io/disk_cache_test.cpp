@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <iostream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -159,13 +160,13 @@ TEST_F(DiskCacheTest, WhatLiesUnusedForLongestGoesFirst) {
 TEST_F(DiskCacheTest, WhatOthersLeaveInTheFolderStaysButForRestsOfDeadProcesses) {
     cache().store("a", 1, bytes_like(10, 1));
     std::ofstream(folder_ / "cache/notes.txt") << std::string(9000, 'x');
-    std::ofstream(folder_ / "cache/.a.0000000000000001.vcache.0.part") << "old";
+    std::ofstream(folder_ / "cache/.a.0000000000000001.vcache.1234.part") << "old";
     make_older(".part", std::chrono::hours(48));
-    std::ofstream(folder_ / "cache/.a.0000000000000002.vcache.0.part") << "being written";
+    std::ofstream(folder_ / "cache/.a.0000000000000002.vcache.1234.part") << "being written";
     cache(200).store("a", 3, bytes_like(10, 1));
     EXPECT_TRUE(fs::exists(folder_ / "cache/notes.txt"));
-    EXPECT_FALSE(fs::exists(folder_ / "cache/.a.0000000000000001.vcache.0.part"));
-    EXPECT_TRUE(fs::exists(folder_ / "cache/.a.0000000000000002.vcache.0.part"));
+    EXPECT_FALSE(fs::exists(folder_ / "cache/.a.0000000000000001.vcache.1234.part"));
+    EXPECT_TRUE(fs::exists(folder_ / "cache/.a.0000000000000002.vcache.1234.part"));
     EXPECT_TRUE(cache().load("a", 1).has_value());
 }
 
@@ -189,6 +190,7 @@ TEST_F(DiskCacheTest, ProcessesThatShareAFolderSeeWholeEntriesOrNone) {
                 }
                 wrong += known ? 0 : 1;
             }
+            std::cerr << said_ << (wrong == 0 ? "" : std::to_string(wrong) + " entries are nobody's\n");
             _exit(wrong == 0 && log_.faults().empty() ? 0 : 1);
         }
         children.push_back(child);
