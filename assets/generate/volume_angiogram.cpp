@@ -13,7 +13,7 @@ namespace viscera::assets {
 namespace {
 
 constexpr double box_mm = 153.6;
-constexpr double step_mm = 1.5;
+constexpr double node_step_mm = 1.5;
 constexpr double aorta_radius_mm = 8.0;
 
 /// Courses that branch off each other.
@@ -33,7 +33,7 @@ class Arteries {
         courses_.push_back({.name = name,
                             .parent = parent,
                             .parent_point = point,
-                            .points = resample(spline(way, 16), step_mm),
+                            .points = resample(spline(way, 16), node_step_mm),
                             .tip_weight = tip_weight});
         return static_cast<int>(courses_.size()) - 1;
     }

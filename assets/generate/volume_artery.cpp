@@ -11,7 +11,7 @@
 namespace viscera::assets {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double length_mm = 24.0;
 constexpr double plaque_side = 0.6;  // its middle [rad]
 constexpr double branch_side = 3.6;

@@ -12,7 +12,7 @@
 namespace viscera::assets {
 
 /// Part of the patient [mm].
-struct Bounds {
+struct PaintedBox {
     glm::vec3 low{-1e4F};
     glm::vec3 high{1e4F};
 };
@@ -27,7 +27,7 @@ class Canvas {
     /// Paints where distance(p) < 0 (half-way at 0) what value(p, distance) tells. Blocks of voxels that
     /// the distance shows to be far outside are passed over: it may be wrong by 40 %, not more.
     template <typename Distance, typename Value>
-    void paint(const Bounds& bounds, std::uint8_t label, const Distance& distance, const Value& value) {
+    void paint(const PaintedBox& bounds, std::uint8_t label, const Distance& distance, const Value& value) {
         glm::ivec3 block;
         for (block.z = 0; block.z < dims_.z; block.z += block_size) {
             for (block.y = 0; block.y < dims_.y; block.y += block_size) {
@@ -45,7 +45,7 @@ class Canvas {
         }
     }
     template <typename Distance>
-    void paint(const Bounds& bounds, std::uint8_t label, const Distance& distance, float value) {
+    void paint(const PaintedBox& bounds, std::uint8_t label, const Distance& distance, float value) {
         paint(bounds, label, distance, [value](const glm::vec3&, float) { return value; });
     }
 

@@ -10,7 +10,7 @@
 namespace viscera::assets {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Distance to the skin of a head. x to its left, y out of the face, z to the crown [mm].
 float skin_distance(const glm::vec3& p) {

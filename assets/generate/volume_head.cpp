@@ -25,9 +25,9 @@ constexpr float compact_bone = 1250.0F;
 
 constexpr float noise_sigma = 6.0F;
 constexpr double point_spread_mm = 0.7;  // of a scanner; sharper edges show the grid as rings
-constexpr Bounds braincase_box{{-72.0F, -80.0F, -48.0F}, {72.0F, 98.0F, 100.0F}};
-constexpr Bounds face_box{{-80.0F, -112.0F, -70.0F}, {80.0F, 50.0F, 40.0F}};
-constexpr Bounds jaw_box{{-64.0F, -94.0F, -116.0F}, {64.0F, 20.0F, -14.0F}};
+constexpr PaintedBox braincase_box{{-72.0F, -80.0F, -48.0F}, {72.0F, 98.0F, 100.0F}};
+constexpr PaintedBox face_box{{-80.0F, -112.0F, -70.0F}, {80.0F, 50.0F, 40.0F}};
+constexpr PaintedBox jaw_box{{-64.0F, -94.0F, -116.0F}, {64.0F, 20.0F, -14.0F}};
 
 float noise_at(const glm::vec3& p, double feature_mm, std::uint32_t seed) {
     return static_cast<float>(gradient_noise(glm::dvec3(p) / feature_mm, seed));
@@ -89,7 +89,7 @@ void paint_airways(Canvas& canvas) {
 }
 
 void paint_orbits(Canvas& canvas) {
-    const Bounds box{{-58.0F, -92.0F, -24.0F}, {58.0F, -20.0F, 22.0F}};
+    const PaintedBox box{{-58.0F, -92.0F, -24.0F}, {58.0F, -20.0F, 22.0F}};
     // Fat fills the orbit up to the lids.
     canvas.paint(
         box, soft_tissue,
@@ -119,7 +119,7 @@ void paint_orbits(Canvas& canvas) {
 }
 
 void paint_spine(Canvas& canvas, std::uint32_t seed) {
-    const Bounds box{{-50.0F, 0.0F, -130.0F}, {50.0F, 90.0F, -28.0F}};
+    const PaintedBox box{{-50.0F, 0.0F, -130.0F}, {50.0F, 90.0F, -28.0F}};
     for (int level = 1; level <= vertebra_count; ++level) {
         canvas.paint(
             box, vertebrae, [level](const glm::vec3& p) { return vertebra_distance(p, level); },

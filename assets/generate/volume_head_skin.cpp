@@ -6,7 +6,7 @@ namespace viscera::assets {
 namespace {
 
 /// Neck: oval, leaning to the front on its way up.
-float neck(const glm::vec3& q) {
+float neck_of(const glm::vec3& q) {
     const float middle_y = 22.0F - 0.16F * (q.z + 60.0F);
     const float d = ellipse({q.x, q.y - middle_y}, {55.0F, 52.0F});
     return carve(d, -(q.z + 40.0F), 20.0F);
@@ -76,7 +76,7 @@ float skin_distance(const glm::vec3& p) {
     float d = ellipsoid(q, {0.0F, 9.0F, 32.0F}, {76.5F, 94.0F, 73.0F});
     d = join(d, ellipsoid(q, {0.0F, -30.0F, -28.0F}, {62.0F, 51.0F, 62.0F}), 22.0F);
     d = join(d, ellipsoid(q, {0.0F, -32.0F, -78.0F}, {51.0F, 45.0F, 29.0F}), 16.0F);
-    d = join(d, neck(q), 16.0F);
+    d = join(d, neck_of(q), 16.0F);
     d = join(d, ellipsoid(q, {0.0F, 8.0F, -14.0F}, {71.0F, 68.0F, 52.0F}), 26.0F);
     d = join(d, ellipsoid(q, {0.0F, 46.0F, -4.0F}, {60.0F, 54.5F, 44.0F}), 20.0F);
     d = join(d, ellipsoid(q, {56.0F, 24.0F, -34.0F}, {15.0F, 19.0F, 22.0F}), 16.0F);

@@ -43,15 +43,15 @@ class Buffer {
     std::string data_;
 };
 
-void append_word(std::string& file, std::size_t word) {
+void append_little_endian(std::string& file, std::size_t word) {
     for (unsigned shift = 0; shift < 32U; shift += 8U) {
         file.push_back(static_cast<char>((word >> shift) & 0xffU));
     }
 }
 
-void append_chunk(std::string& file, const char* type, std::string data, char padding) {
+void append_glb_chunk(std::string& file, const char* type, std::string data, char padding) {
     data.resize((data.size() + 3) / 4 * 4, padding);
-    append_word(file, data.size());
+    append_little_endian(file, data.size());
     file.append(type, 4);
     file += data;
 }
@@ -102,11 +102,11 @@ void write_glb(const MeshData& mesh, const std::filesystem::path& path) {
     gltf["buffers"] = {{{"byteLength", buffer.data().size()}}};
 
     std::string chunks;
-    append_chunk(chunks, "JSON", gltf.dump(), ' ');
-    append_chunk(chunks, "BIN\0", buffer.data(), '\0');
+    append_glb_chunk(chunks, "JSON", gltf.dump(), ' ');
+    append_glb_chunk(chunks, "BIN\0", buffer.data(), '\0');
     std::string file = "glTF";
-    append_word(file, 2);
-    append_word(file, 12 + chunks.size());
+    append_little_endian(file, 2);
+    append_little_endian(file, 12 + chunks.size());
     write_file(path, file + chunks);
 }
 

@@ -11,17 +11,18 @@
 namespace viscera::assets {
 namespace {
 
-void append_word(std::string& bytes, std::size_t word) {
+void append_big_endian(std::string& bytes, std::size_t word) {
     for (int shift = 24; shift >= 0; shift -= 8) {
         bytes.push_back(static_cast<char>((word >> shift) & 0xffU));
     }
 }
 
-void append_chunk(std::string& file, const std::string& type, const std::string& data) {
-    append_word(file, data.size());
+void append_png_chunk(std::string& file, const std::string& type, const std::string& data) {
+    append_big_endian(file, data.size());
     const std::string body = type + data;
     file += body;
-    append_word(file, crc32(0, reinterpret_cast<const Bytef*>(body.data()), static_cast<uInt>(body.size())));
+    append_big_endian(file,
+                      crc32(0, reinterpret_cast<const Bytef*>(body.data()), static_cast<uInt>(body.size())));
 }
 
 /// Rows from the top, each as differences from the pixel to the left (filter type 1).
@@ -61,13 +62,13 @@ std::string compressed(const std::string& bytes) {
 
 void write_png(const ColourImage& image, bool with_alpha, const std::filesystem::path& path) {
     std::string header;
-    append_word(header, static_cast<std::size_t>(image.width));
-    append_word(header, static_cast<std::size_t>(image.height));
+    append_big_endian(header, static_cast<std::size_t>(image.width));
+    append_big_endian(header, static_cast<std::size_t>(image.height));
     header += std::string({8, static_cast<char>(with_alpha ? 6 : 2), 0, 0, 0});
     std::string file = "\x89PNG\r\n\x1a\n";
-    append_chunk(file, "IHDR", header);
-    append_chunk(file, "IDAT", compressed(filtered(image, with_alpha ? 4 : 3)));
-    append_chunk(file, "IEND", "");
+    append_png_chunk(file, "IHDR", header);
+    append_png_chunk(file, "IDAT", compressed(filtered(image, with_alpha ? 4 : 3)));
+    append_png_chunk(file, "IEND", "");
     write_file(path, file);
 }
 

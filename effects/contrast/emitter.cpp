@@ -4,15 +4,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/core/finite.h"
+
 namespace viscera::contrast {
 namespace {
 
 // Of the side view: where the base lies in it (thesis, appendix 2.e).
 constexpr glm::dvec2 base_in_sprite(0.55, 0.15);
-
-bool finite(const glm::dvec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
 
 PixelRect cover_of(const SpriteQuad& quad, glm::ivec2 size) {
     const glm::dvec2 right(quad.axis.y, -quad.axis.x);
@@ -60,7 +58,7 @@ void EmitterParams::visit(ParamVisitor& v) {
 EmitterFault place(const EmitterParams& emitter, const View& view, glm::ivec2 size, bool front,
                    SpriteQuad& quad) {
     if (!finite(emitter.base_mm) || !finite(emitter.tip_mm) || !finite(emitter.edge_mm) ||
-        !std::isfinite(emitter.size)) {
+        !finite(emitter.size)) {
         return EmitterFault::not_finite;
     }
     const auto base = project_to_uv(view, emitter.base_mm);
@@ -74,7 +72,7 @@ EmitterFault place(const EmitterParams& emitter, const View& view, glm::ivec2 si
     quad.tip = *tip * pixels;
     quad.length = glm::length(quad.tip - quad.base);
     const glm::dvec3 axis = glm::normalize(emitter.tip_mm - emitter.base_mm);
-    if (!finite(axis) || !std::isfinite(quad.length)) {
+    if (!finite(axis) || !finite(quad.length)) {
         return EmitterFault::no_length;
     }
     // Less than a thousandth of a pixel: seen exactly from the front, where no side is left.

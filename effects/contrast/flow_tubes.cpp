@@ -1,18 +1,14 @@
 #include "effects/contrast/flow_tubes.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
+
+#include "engine/core/finite.h"
 
 namespace viscera::contrast {
 namespace {
 
 constexpr double smallest_length = 1.0e-6;
-
-bool finite(const CentrelineGraph::Node& node) {
-    return std::isfinite(node.position_mm.x) && std::isfinite(node.position_mm.y) &&
-           std::isfinite(node.position_mm.z) && std::isfinite(node.radius_mm);
-}
 
 }  // namespace
 
@@ -22,8 +18,7 @@ std::vector<Tube> make_tubes(const CentrelineGraph& graph, double viscosity_pa_s
     std::uint64_t broken = 0;
     for (std::size_t e = 0; e < tubes.size(); ++e) {
         const auto [a, b] = graph.edges[e];
-        tubes[e].valid = a < graph.nodes.size() && b < graph.nodes.size() && a != b &&
-                         finite(graph.nodes[a]) && finite(graph.nodes[b]);
+        tubes[e].valid = graph.joins(graph.edges[e]);
         if (tubes[e].valid) {
             lengths[e] = glm::distance(graph.nodes[a].position_mm, graph.nodes[b].position_mm);
         } else {
@@ -51,7 +46,7 @@ std::vector<Tube> make_tubes(const CentrelineGraph& graph, double viscosity_pa_s
         // mm^4 / (Pa s mm) = mm^3 / (s Pa): lengths may stay in millimetres.
         tubes[e].conductance = std::numbers::pi * r4 / (8.0 * viscosity_pa_s * length);
         tubes[e].volume_mm3 = std::numbers::pi * length * squares / 3.0;
-        if (!(tubes[e].conductance > 0.0) || !std::isfinite(tubes[e].conductance)) {
+        if (!(tubes[e].conductance > 0.0) || !finite(tubes[e].conductance)) {
             tubes[e] = {.valid = true};  // beyond what a double can hold
             ++closed;
         }

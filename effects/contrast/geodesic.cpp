@@ -10,20 +10,17 @@
 #include "effects/contrast/density.h"
 #include "effects/contrast/point_grid.h"
 #include "engine/core/error.h"
+#include "engine/core/finite.h"
 #include "engine/io/mesh.h"
 
 namespace viscera::contrast {
 namespace {
 
-constexpr double never = std::numeric_limits<double>::infinity();
+constexpr double unreached = std::numeric_limits<double>::infinity();
 // A drop smaller than this share of the distance is rounding, and not worth another visit.
 constexpr double least_drop = 1.0e-9;
 
 using Triangle = std::array<std::uint32_t, 3>;
-
-bool finite(const glm::vec3& p) {
-    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-}
 
 // Distance at corner c from those at a and b, the source unfolded into the plane of the triangle.
 double unfold(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, double at_a, double at_b) {
@@ -32,7 +29,7 @@ double unfold(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, dou
     const glm::dvec3 ac = c - a;
     const double base = glm::length(ab);
     const double area = glm::length(glm::cross(ab, ac));
-    if (!(base > 0.0) || !(area > 1.0e-12 * base * base) || !std::isfinite(at_a + at_b)) {
+    if (!(base > 0.0) || !(area > 1.0e-12 * base * base) || !finite(at_a + at_b)) {
         return along_edges;
     }
     // a at the origin, b at (base, 0), c above the axis, the source below it.
@@ -180,11 +177,11 @@ GeodesicDistances geodesic_distances(std::span<const glm::vec3> positions_mm,
                                      std::span<const std::uint32_t> indices, const glm::dvec3& injection_mm,
                                      double bridge_mm, Log& log) {
     GeodesicDistances result;
-    result.distance_mm.assign(positions_mm.size(), never);
+    result.distance_mm.assign(positions_mm.size(), unreached);
     const Surface surface(positions_mm, indices, log);
 
     std::vector<std::uint32_t> places;
-    double nearest = never;
+    double nearest = unreached;
     for (std::uint32_t v = 0; v < positions_mm.size(); ++v) {
         if (surface.place(v) != v || !surface.used(v)) {
             continue;
@@ -197,7 +194,7 @@ GeodesicDistances geodesic_distances(std::span<const glm::vec3> positions_mm,
             result.start = v;
         }
     }
-    if (!std::isfinite(nearest)) {
+    if (!finite(nearest)) {
         log.fault("contrast.no_injection_vertex",
                   "the vessel mesh has no vertex near the injection: no part is reached");
         return result;
@@ -206,7 +203,7 @@ GeodesicDistances geodesic_distances(std::span<const glm::vec3> positions_mm,
     march(surface, grid, bridge_mm, result.start, result.distance_mm);
     for (std::uint32_t v = 0; v < positions_mm.size(); ++v) {
         result.distance_mm[v] = result.distance_mm[surface.place(v)];
-        if (std::isfinite(result.distance_mm[v])) {
+        if (finite(result.distance_mm[v])) {
             ++result.vertices_reached;
             result.parts_reached += surface.used(v) && surface.part(v) == v ? 1 : 0;
         }
@@ -217,10 +214,10 @@ GeodesicDistances geodesic_distances(std::span<const glm::vec3> positions_mm,
 std::vector<float> geodesic_arrival(std::span<const glm::vec3> positions_mm,
                                     std::span<const std::uint32_t> indices, const glm::dvec3& injection_mm,
                                     const GeodesicParams& params, Log& log) {
-    if (!(params.speed_mm_s > 0.0) || !std::isfinite(params.speed_mm_s)) {
+    if (!(params.speed_mm_s > 0.0) || !finite(params.speed_mm_s)) {
         throw Error(ErrorCode::scene, "geodesic/speed_mm_s", "must be > 0 and finite");
     }
-    if (!(params.bridge_mm >= 0.0) || !std::isfinite(params.bridge_mm)) {
+    if (!(params.bridge_mm >= 0.0) || !finite(params.bridge_mm)) {
         throw Error(ErrorCode::scene, "geodesic/bridge_mm", "must be >= 0 and finite");
     }
     const GeodesicDistances distances =

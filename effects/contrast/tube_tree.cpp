@@ -2,28 +2,20 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
+
+#include "engine/core/finite.h"
 
 namespace viscera::contrast {
 namespace {
 
 constexpr std::uint32_t leaf_size = 4;
 
-bool usable(const CentrelineGraph& graph, const CentrelineGraph::Edge& edge) {
-    const auto finite = [](const CentrelineGraph::Node& n) {
-        return std::isfinite(n.position_mm.x) && std::isfinite(n.position_mm.y) &&
-               std::isfinite(n.position_mm.z) && std::isfinite(n.radius_mm);
-    };
-    return edge.a < graph.nodes.size() && edge.b < graph.nodes.size() && edge.a != edge.b &&
-           finite(graph.nodes[edge.a]) && finite(graph.nodes[edge.b]);
-}
-
 }  // namespace
 
 TubeTree::TubeTree(const CentrelineGraph& graph) : graph_(graph), edges_at_node_(graph.nodes.size()) {
     for (std::uint32_t e = 0; e < graph.edges.size(); ++e) {
-        if (usable(graph, graph.edges[e])) {
+        if (graph.joins(graph.edges[e])) {
             edges_.push_back(e);
             edges_at_node_[graph.edges[e].a].push_back(e);
             edges_at_node_[graph.edges[e].b].push_back(e);
@@ -82,7 +74,7 @@ TubeFoot TubeTree::foot(const glm::dvec3& point_mm, std::size_t edge) const {
 
 std::optional<TubeFoot> TubeTree::nearest_wall(const glm::dvec3& point_mm,
                                                std::optional<std::size_t> guess) const {
-    if (boxes_.empty() || !std::isfinite(point_mm.x + point_mm.y + point_mm.z)) {
+    if (boxes_.empty() || !finite(point_mm)) {
         return {};
     }
     TubeFoot best = foot(point_mm, guess.value_or(edges_.front()));

@@ -1,9 +1,9 @@
 #include "effects/organ/hematoma.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
+#include "engine/core/finite.h"
 #include "engine/core/hash.h"
 #include "engine/core/pixel_index.h"
 #include "engine/runtime/pass.h"
@@ -18,11 +18,10 @@ constexpr double cell_pixels = 32.0;
 constexpr double cell_uv = 1.0 / 64.0;
 constexpr std::size_t most_listed = std::size_t{1} << 20U;
 constexpr double wider = 1.001;
-constexpr double farthest_mm = 1e15;
+constexpr double farthest_spot_mm = 1e15;
 
 bool usable(const glm::dvec4& spot) {
-    return std::isfinite(spot.x) && std::isfinite(spot.y) && std::isfinite(spot.z) && std::isfinite(spot.w) &&
-           spot.w > 0.0;
+    return finite(spot) && spot.w > 0.0;
 }
 
 }  // namespace
@@ -75,8 +74,8 @@ void Hematoma::find_ranges(const HematomaParams& params, const View& view, glm::
             const double radius = spots_[i].w * wider;
             if (in_world) {
                 // Within what floats can count in: spots may be as large as a double.
-                const Bounds box{glm::vec3(glm::clamp(centre - radius, -farthest_mm, farthest_mm)),
-                                 glm::vec3(glm::clamp(centre + radius, -farthest_mm, farthest_mm))};
+                const Bounds box{glm::vec3(glm::clamp(centre - radius, -farthest_spot_mm, farthest_spot_mm)),
+                                 glm::vec3(glm::clamp(centre + radius, -farthest_spot_mm, farthest_spot_mm))};
                 const PixelRect rect = project_bounds(box, view.view_projection(), size);
                 const glm::dvec2 low(rect.x, rect.y);
                 ranges_[i] = rect.empty() ? Range{}

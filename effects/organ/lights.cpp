@@ -6,7 +6,7 @@
 namespace viscera::organ {
 namespace {
 
-constexpr double farthest_mm = 1e8;
+constexpr double farthest_light_mm = 1e8;
 constexpr double steepest = 1e30;  // as a float, and of a distance of 0 still 0
 
 glm::dvec3 unit_or_zero(const glm::dvec3& v) {
@@ -30,7 +30,7 @@ LightUniforms make_lights(std::span<const LightParams> lights, const View& view,
             place = light.place == LightPlace::world ? glm::dvec3(view.view * glm::dvec4(place, 1.0))
                                                      : place + view.camera_in_eye_mm;
             place -= centre_in_eye;
-            far = !(glm::length(place) <= farthest_mm);
+            far = !(glm::length(place) <= farthest_light_mm);
         }
         made.too_far += far && light.place != LightPlace::infinity ? 1 : 0;
         const bool ended = far && light.place != LightPlace::infinity && light.falloff_mm > 0.0;

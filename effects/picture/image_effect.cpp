@@ -13,7 +13,7 @@ namespace {
 constexpr std::array<std::string_view, 3> fit_names{"cover", "stretch", "height"};
 
 /// Nothing that is not finite may reach a target: such texels count as black, and are counted.
-Image finite(const Image& image, Log& log, const std::string& file) {
+Image finite_picture(const Image& image, Log& log, const std::string& file) {
     Image clean = image;
     std::uint64_t faults = 0;
     for (int y = 0; y < image.height; ++y) {
@@ -71,7 +71,7 @@ void ImageEffect::draw(const Pass& pass) {
             const std::string file = params_.file.path.string();
             const std::shared_ptr<const Image> image = pass.assets().image(params_.file.path);
             return std::make_shared<gl::Texture>(
-                gl::Texture::from_image(pass.gl(), finite(*image, pass.log(), file), file));
+                gl::Texture::from_image(pass.gl(), finite_picture(*image, pass.log(), file), file));
         });
     glm::dvec2 scale(1.0);
     if (params_.fit != Fit::stretch) {

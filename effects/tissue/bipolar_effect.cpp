@@ -9,6 +9,7 @@
 
 #include "effects/tissue/list_texture.h"
 #include "engine/core/error.h"
+#include "engine/core/finite.h"
 #include "engine/core/hash.h"
 #include "engine/core/log.h"
 #include "engine/gl/texture.h"
@@ -19,11 +20,6 @@ namespace {
 
 constexpr std::array<std::string_view, 4> shape_names{"capsule", "box", "sphere", "cylinder"};
 constexpr std::array<std::string_view, 4> shape_defines{"CAPSULE", "BOX", "SPHERE", "CYLINDER"};
-
-bool finite(const glm::dmat4& m) {
-    const double* const numbers = glm::value_ptr(m);
-    return std::all_of(numbers, numbers + 16, [](double value) { return std::isfinite(value); });
-}
 
 /// Of a ball around the shape's centre in its own frame [mm].
 double radius_of(const ToolParams& tool) {

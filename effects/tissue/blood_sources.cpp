@@ -5,6 +5,7 @@
 #include <numbers>
 #include <span>
 
+#include "engine/core/finite.h"
 #include "engine/core/log.h"
 
 namespace viscera::tissue {
@@ -16,10 +17,6 @@ constexpr int most_drops_per_step = 8;
 constexpr double smallest_tool_mm = 1e-6;
 // More than any film's thickness.
 constexpr double most_sucked_mm = 1e6;
-
-bool finite(const glm::dvec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
 
 /// The host's array in records of a length; what does not fit is a fault.
 template <class Take>
@@ -39,9 +36,8 @@ void each_record(const HostValues* values, std::string_view name, std::size_t le
 }
 
 bool usable(const WoundParams& w, Log& log) {
-    if (finite(w.position_mm) && finite(w.direction) && std::isfinite(w.radius_mm) &&
-        std::isfinite(w.rate_mm3_s) && std::isfinite(w.speed_mm_s) && std::isfinite(w.pulse_hz) &&
-        std::isfinite(w.pulse_depth)) {
+    if (finite(w.position_mm) && finite(w.direction) && finite(w.radius_mm) && finite(w.rate_mm3_s) &&
+        finite(w.speed_mm_s) && finite(w.pulse_hz) && finite(w.pulse_depth)) {
         return true;
     }
     log.fault("tissue.wound_not_finite", "a wound has a value that is not finite; it does not bleed");
@@ -49,8 +45,7 @@ bool usable(const WoundParams& w, Log& log) {
 }
 
 bool usable(const CleanerParams& t, Log& log) {
-    if (finite(t.position_mm) && std::isfinite(t.radius_mm) && t.radius_mm >= smallest_tool_mm &&
-        std::isfinite(t.rate)) {
+    if (finite(t.position_mm) && finite(t.radius_mm) && t.radius_mm >= smallest_tool_mm && finite(t.rate)) {
         return true;
     }
     log.fault("tissue.tool_not_finite",
@@ -73,7 +68,7 @@ void collect_wounds(const BloodParams& params, const HostValues* values, Log& lo
         }
         wounds.push_back(wound);
         const double length = glm::length(wound.direction);
-        if (wound.kind == BleedingKind::jet && !(length > 0.0 && std::isfinite(length))) {
+        if (wound.kind == BleedingKind::jet && !(length > 0.0 && finite(length))) {
             log.fault("tissue.jet_no_direction",
                       "a jet's direction has no length; its blood wells up instead");
             wounds.back().kind = BleedingKind::ooze;

@@ -5,6 +5,8 @@
 #include <numbers>
 #include <tuple>
 
+#include "engine/core/finite.h"
+
 namespace viscera::tissue {
 namespace {
 
@@ -15,10 +17,6 @@ constexpr std::array<std::string_view, 2> gain_names{"peak", "normalised"};
 constexpr double smallest_sigma = 1e-18;
 // A dose beyond this has the same effect, and sums of 65,000 of them stay finite in a float.
 constexpr double largest_dose = 1e30;
-
-bool finite(const glm::dvec3& p) {
-    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-}
 
 /// Where a contact stands in the order that sums are formed in.
 auto rank(const Contact& c) {
@@ -126,7 +124,7 @@ void ContactList::add_host(const HostValues& values, const Settings& settings) {
         Contact contact{
             .to = {f[0], f[1], f[2]}, .sigma = f[4], .begin_s = settings.begin_s, .end_s = settings.end_s};
         const std::optional<ContactAction> action = action_of(f[5], f[3]);
-        if (!action || !finite(contact.to) || !std::isfinite(f[3]) || !std::isfinite(f[4])) {
+        if (!action || !finite(contact.to) || !finite(f[3]) || !finite(f[4])) {
             ++unusable_;
             continue;
         }
@@ -241,7 +239,7 @@ void ContactList::keep_places(const HostValues* values) {
         const std::span<const float> f = std::span(given->values).subspan(i, floats_per_contact);
         const glm::dvec3 at(f[0], f[1], f[2]);
         const std::optional<ContactAction> action = action_of(f[5], f[3]);
-        const bool on = action && finite(at) && std::isfinite(f[3]) && f[3] != 0.0F;
+        const bool on = action && finite(at) && finite(f[3]) && f[3] != 0.0F;
         last_.push_back({at, action.value_or(ContactAction::coagulate), on});
     }
 }

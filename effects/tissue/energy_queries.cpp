@@ -12,7 +12,7 @@
 namespace viscera::tissue {
 namespace {
 
-float distance2(const glm::vec3& p, const glm::vec3& low, const glm::vec3& high) {
+float distance2_to_box(const glm::vec3& p, const glm::vec3& low, const glm::vec3& high) {
     const glm::vec3 outside = glm::max(glm::max(low - p, p - high), 0.0F);
     return glm::dot(outside, outside);
 }
@@ -165,7 +165,7 @@ std::optional<double> EnergyQueries::energy_at(const glm::dvec3& point_mm, doubl
     std::size_t first = 0;
     float nearest = std::numeric_limits<float>::max();
     for (std::size_t t = 0; t < boxes_.size(); ++t) {
-        const float d2 = distance2(point, boxes_[t].low, boxes_[t].high);
+        const float d2 = distance2_to_box(point, boxes_[t].low, boxes_[t].high);
         if (d2 < nearest) {
             nearest = d2;
             first = t;
@@ -173,7 +173,7 @@ std::optional<double> EnergyQueries::energy_at(const glm::dvec3& point_mm, doubl
     }
     nearest_in_tile(first, point, least, texel);
     for (std::size_t t = 0; t < boxes_.size(); ++t) {
-        if (t != first && distance2(point, boxes_[t].low, boxes_[t].high) <= least) {
+        if (t != first && distance2_to_box(point, boxes_[t].low, boxes_[t].high) <= least) {
             nearest_in_tile(t, point, least, texel);
         }
     }

@@ -35,7 +35,7 @@ SeamReach pack(std::span<const std::array<int, 2>> numbers, const SquareGrid& gr
 }
 
 /// From -1 to 1 each, for i from 0 to 8.
-glm::ivec2 around(int i) {
+glm::ivec2 neighbour(int i) {
     return {i % 3 - 1, i / 3 - 1};
 }
 
@@ -67,8 +67,8 @@ SeamReach reach_beside_seams(const SquareGrid& grid, std::span<const SeamLink> l
     std::vector<std::array<int, 2>> found;
     for (const auto& [to, from] : joined) {
         for (int i = 0; i < 81; ++i) {
-            const glm::ivec2 here = glm::ivec2(to % count, to / count) + around(i / 9);
-            const glm::ivec2 there = glm::ivec2(from % count, from / count) + around(i % 9);
+            const glm::ivec2 here = glm::ivec2(to % count, to / count) + neighbour(i / 9);
+            const glm::ivec2 there = glm::ivec2(from % count, from / count) + neighbour(i % 9);
             if (inside(here) && inside(there)) {
                 found.push_back({here.y * count + here.x, there.x + (there.y << 9)});
             }
@@ -91,7 +91,7 @@ SeamReach reach_across_seams(const SquareGrid& grid, int past_seam, std::span<co
         const int there = grid.square_of(to);
         add(here, there, reach_from_where_it_lies);
         for (int i = 0; i < 9; ++i) {
-            const glm::ivec2 way = past_seam * around(i);
+            const glm::ivec2 way = past_seam * neighbour(i);
             add(here, grid.square_of(to, way), reach_from_where_it_runs_far);
             if (towards) {
                 add(grid.square_of(from, way), there, reach_from_where_it_runs_far);

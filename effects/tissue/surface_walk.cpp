@@ -7,8 +7,6 @@
 namespace viscera::tissue {
 namespace {
 
-constexpr std::uint32_t none = MeshAdjacency::none;
-
 /// The part of a triangle's plane that points from the line through `a` along the unit vector `edge` to its
 /// third corner, unit length; 0 for a triangle without area.
 glm::dvec3 inward(const glm::dvec3& a, const glm::dvec3& edge, const glm::dvec3& third) {
@@ -24,7 +22,7 @@ glm::dvec3 inward(const glm::dvec3& a, const glm::dvec3& edge, const glm::dvec3&
 /// Turns `way` about a half-edge into the plane of the triangle on the other side.
 bool SurfaceWalk::cross(std::uint32_t half_edge, glm::dvec3& way, std::uint32_t& entered) const {
     entered = adjacency_.across[half_edge];
-    if (entered == none) {
+    if (entered == MeshAdjacency::none) {
         return false;
     }
     const glm::dvec3 a = corner(half_edge);
@@ -46,7 +44,7 @@ bool SurfaceWalk::cross(std::uint32_t half_edge, glm::dvec3& way, std::uint32_t&
 bool SurfaceWalk::leave(std::uint32_t half_edge, double along, const glm::dvec3& way,
                         SurfacePoint& end) const {
     glm::dvec3 left = way;
-    std::uint32_t entered = none;
+    std::uint32_t entered = MeshAdjacency::none;
     if (!cross(half_edge, left, entered)) {
         return false;
     }
@@ -84,7 +82,7 @@ bool SurfaceWalk::leave(std::uint32_t half_edge, double along, const glm::dvec3&
         place += part * left;
         left *= 1.0 - part;
         std::uint32_t exit = passed == 0 ? side[1] : side[2];
-        std::uint32_t next = none;
+        std::uint32_t next = MeshAdjacency::none;
         if (passed == 2 || !cross(exit, left, next) || step + 1 == most_steps) {
             std::array<double, 3> weight{};
             double sum = 0.0;

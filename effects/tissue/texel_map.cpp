@@ -16,8 +16,6 @@
 namespace viscera::tissue {
 namespace {
 
-constexpr std::uint32_t none = MeshAdjacency::none;
-
 /// Named in the disk cache; another number when maps are made in another way.
 constexpr std::string_view cached_kind = "texel-map-4";
 
@@ -62,7 +60,7 @@ class MapMaker {
         double outward = 0.0;    ///< [texels] towards the outside of the half-edge
         double along = 0.0;
         glm::dvec2 away{0.0};  ///< from the border to the texel [texels]
-        std::uint32_t half_edge = none;
+        std::uint32_t half_edge = MeshAdjacency::none;
     };
 
     static void report(const Progress& progress, double fraction) {
@@ -116,7 +114,7 @@ class MapMaker {
     /// Whether the texture ends or jumps at a half-edge: nothing beyond, other coordinates beyond, or a fold.
     [[nodiscard]] bool is_border(std::uint32_t half_edge) const {
         const std::uint32_t across = adjacency_.across[half_edge];
-        if (across == none) {
+        if (across == MeshAdjacency::none) {
             return true;
         }
         std::uint32_t a = half_edge;
@@ -151,10 +149,10 @@ class MapMaker {
 
     /// By triangle a triangle that stands for its chart: all that hang together in the texture.
     [[nodiscard]] std::vector<std::uint32_t> find_charts() const {
-        std::vector<std::uint32_t> chart(mesh_.indices.size() / 3, none);
+        std::vector<std::uint32_t> chart(mesh_.indices.size() / 3, MeshAdjacency::none);
         std::vector<std::uint32_t> waiting;
         for (std::uint32_t t = 0; t < chart.size(); ++t) {
-            if (chart[t] != none) {
+            if (chart[t] != MeshAdjacency::none) {
                 continue;
             }
             chart[t] = t;
@@ -164,7 +162,8 @@ class MapMaker {
                 waiting.pop_back();
                 for (std::uint32_t h = 3 * here; h < 3 * here + 3; ++h) {
                     const std::uint32_t across = adjacency_.across[h];
-                    if (across != none && chart[across / 3] == none && !is_border(h)) {
+                    if (across != MeshAdjacency::none && chart[across / 3] == MeshAdjacency::none &&
+                        !is_border(h)) {
                         chart[across / 3] = t;
                         waiting.push_back(across / 3);
                     }
@@ -178,11 +177,11 @@ class MapMaker {
     void count_narrow_texels() {
         const std::vector<std::uint32_t> chart = find_charts();
         const int n = map_.size;
-        std::vector<std::uint32_t> chart_of(map_.texels.size(), none);
+        std::vector<std::uint32_t> chart_of(map_.texels.size(), MeshAdjacency::none);
         for (std::size_t i = 0; i < chart_of.size(); ++i) {
             if (map_.texels[i].owner != 0.0F) {
                 chart_of[i] = chart[static_cast<std::size_t>(map_.texels[i].owner) - 1];
-            } else if (gutters_[i].half_edge != none) {
+            } else if (gutters_[i].half_edge != MeshAdjacency::none) {
                 chart_of[i] = chart[gutters_[i].half_edge / 3];
             }
         }
@@ -215,7 +214,7 @@ class MapMaker {
             for (int u = std::max(x - least_gutter, 0); u <= std::min(x + least_gutter, last); ++u) {
                 const std::size_t i = texel_at(u, v);
                 const bool near = (u - x) * (u - x) + (v - y) * (v - y) <= least_gutter * least_gutter;
-                if (near && chart_of[i] != none && chart_of[i] != own) {
+                if (near && chart_of[i] != MeshAdjacency::none && chart_of[i] != own) {
                     narrow[i] = true;
                 }
             }
@@ -266,7 +265,8 @@ class MapMaker {
         const double difference = candidate.distance2 - gutter.distance2;
         const bool nearer = difference < -same * (1.0 + gutter.distance2);
         const bool as_near = difference <= same * (1.0 + gutter.distance2);
-        if (gutter.half_edge == none || nearer || (as_near && candidate.outward > gutter.outward)) {
+        if (gutter.half_edge == MeshAdjacency::none || nearer ||
+            (as_near && candidate.outward > gutter.outward)) {
             gutter = candidate;
         }
     }
@@ -274,7 +274,7 @@ class MapMaker {
     void walk_gutters() {
         const SurfaceWalk walk(mesh_.positions, mesh_.indices, adjacency_);
         for (std::size_t i = 0; i < gutters_.size(); ++i) {
-            if (gutters_[i].half_edge != none) {
+            if (gutters_[i].half_edge != MeshAdjacency::none) {
                 map_.texels[i] = point_of(gutters_[i], walk);
             }
         }

@@ -111,33 +111,33 @@ static_assert(2 * DistanceGrid::margin_x > distance_reach);
 
 /// Bricks of a row that are looked at together. The compiler makes no vectors of loops like those below by
 /// itself.
-using Bricks = std::experimental::native_simd<std::uint8_t>;
-constexpr int lanes = static_cast<int>(Bricks::size());
+using BrickRow = std::experimental::native_simd<std::uint8_t>;
+constexpr int lanes = static_cast<int>(BrickRow::size());
 
-Bricks load(const std::uint8_t* from) {
+BrickRow load(const std::uint8_t* from) {
     return {from, std::experimental::element_aligned};
 }
 
-void store(const Bricks& bricks, std::uint8_t* to) {
+void store(const BrickRow& bricks, std::uint8_t* to) {
     bricks.copy_to(to, std::experimental::element_aligned);
 }
 
 /// What the search keeps of a brick: kind_step * kind + lack, where lack = distance_reach - size. The size of
 /// the least cube is then the greatest lack; bits of another kind, which an exclusive or leaves standing, are
 /// more than any lack; and another exclusive or makes a texel of it.
-Bricks texels_of(const Bricks& bricks) {
+BrickRow texels_of(const BrickRow& bricks) {
     static_assert(kind_step == distance_reach + 1 && (kind_step & distance_reach) == 0);
-    return bricks ^ Bricks(distance_reach);
+    return bricks ^ BrickRow(distance_reach);
 }
 
 /// Bits of the kind.
-Bricks kinds_of(const Bricks& bricks) {
-    return bricks & Bricks(static_cast<std::uint8_t>(~distance_reach));
+BrickRow kinds_of(const BrickRow& bricks) {
+    return bricks & BrickRow(static_cast<std::uint8_t>(~distance_reach));
 }
 
 /// What cubes lack that are larger by some bricks.
-Bricks larger(const Bricks& lack, int bricks) {
-    const Bricks by(static_cast<std::uint8_t>(bricks));
+BrickRow larger(const BrickRow& lack, int bricks) {
+    const BrickRow by(static_cast<std::uint8_t>(bricks));
     return max(lack, by) - by;
 }
 
@@ -175,7 +175,7 @@ class Rows {
     void take_kinds(const std::uint8_t* kinds, std::uint8_t* row) const {
         // Shifted, since libstdc++ 12 multiplies bytes as signed words, which overflow.
         constexpr int kind_bits = std::countr_zero(static_cast<unsigned>(kind_step));
-        copy_lanes(kinds, row, [](const Bricks& kind) { return kind << kind_bits; });
+        copy_lanes(kinds, row, [](const BrickRow& kind) { return kind << kind_bits; });
         std::fill_n(row - room, room, row[0]);
         std::fill_n(row + dims_.x, padded_ - dims_.x + room, row[dims_.x - 1]);
     }
@@ -223,7 +223,7 @@ void find_along(const glm::ivec3& dims, const Rows& rows, const std::uint8_t* ki
             const std::uint8_t* own = rows.row(kinds, y, z);
             std::uint8_t* row = rows.row(along, y, z);
             rows.each([&](int x) {
-                Bricks lack(0);
+                BrickRow lack(0);
                 where(load(own + x) != load(own + x + step), lack) = distance_reach - 1;
                 store(load(own + x) | lack, row + x);
             });
@@ -233,9 +233,9 @@ void find_along(const glm::ivec3& dims, const Rows& rows, const std::uint8_t* ki
             for (int y = 0; y < dims.y; ++y) {
                 std::uint8_t* row = rows.row(along, y, z);
                 rows.each_before(step, [&](int x) {
-                    const Bricks ahead = load(row + x + next) & Bricks(distance_reach);
-                    const Bricks here = load(row + x);
-                    const Bricks kind = kinds_of(here);
+                    const BrickRow ahead = load(row + x + next) & BrickRow(distance_reach);
+                    const BrickRow here = load(row + x);
+                    const BrickRow kind = kinds_of(here);
                     store(kind | max(here ^ kind, larger(ahead, way)), row + x);
                 });
             }
@@ -266,13 +266,13 @@ void cubes_one_way(const glm::ivec3& dims, const Rows& rows, const std::uint8_t*
             const std::uint8_t* across = ahead(1, 1);
             std::uint8_t* row = rows.row(layers, y, z % 2);
             rows.each([&](int x) {
-                const Bricks here = load(own_along + x);
-                const Bricks kind = kinds_of(here);
+                const BrickRow here = load(own_along + x);
+                const BrickRow kind = kinds_of(here);
                 const auto lack = [&](const std::uint8_t* from) {
                     return max(load(from + x) ^ kind, load(from + x + step) ^ kind);
                 };
-                const Bricks most = max(max(lack(beside), lack(above)), lack(across));
-                store(kind | max(here ^ kind, larger(min(most, Bricks(distance_reach)), 1)), row + x);
+                const BrickRow most = max(max(lack(beside), lack(above)), lack(across));
+                store(kind | max(here ^ kind, larger(min(most, BrickRow(distance_reach)), 1)), row + x);
             });
             rows.clear_ends(own_kinds, row);
             write(place.x, place.y, row);

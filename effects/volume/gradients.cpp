@@ -15,7 +15,7 @@
 namespace viscera::volume {
 namespace {
 
-constexpr double most = 32767.0;
+constexpr double greatest_stored = 32767.0;
 
 /// Voxels of one channel, slice by slice, each decoded once.
 class Slices {
@@ -126,9 +126,10 @@ std::vector<std::byte> encoded(const Volume& volume, int channel, float empty, c
     std::vector<std::byte> result(size.x * size.y * size.z * sizeof(glm::i16vec4));
     std::byte* to = result.data();
     constexpr float least = 1e-30F;  // of which 32767 parts a float still tells apart
-    const float scale = greatest > least ? static_cast<float>(most) / greatest : 0.0F;
+    const float scale = greatest > least ? static_cast<float>(greatest_stored) / greatest : 0.0F;
     each_gradient(volume, channel, empty, box, progress, [&](const glm::vec3& g) {
-        const glm::vec3 scaled = glm::clamp(g * scale, -static_cast<float>(most), static_cast<float>(most));
+        const glm::vec3 scaled =
+            glm::clamp(g * scale, -static_cast<float>(greatest_stored), static_cast<float>(greatest_stored));
         const glm::i16vec4 texel(glm::i16vec3(glm::round(scaled)), 0);
         std::memcpy(to, &texel, sizeof(texel));
         to += sizeof(texel);
@@ -168,7 +169,7 @@ void follow(Assets& assets, Gradients& made, const Source& voxels, int channel) 
         // A steep place that is gone would leave few steps to all others: two bits less are too few.
         made.top = gained < made.top && lost >= made.top ? greatest_texel(made.source().volume(), all)
                                                          : std::max(made.top, gained);
-        everything = made.greatest > 0.0F && made.top < static_cast<int>(most) / 4;
+        everything = made.greatest > 0.0F && made.top < static_cast<int>(greatest_stored) / 4;
     }
     if (everything) {
         const Progress progress =
@@ -177,13 +178,14 @@ void follow(Assets& assets, Gradients& made, const Source& voxels, int channel) 
             return progress ? Progress([=](double done) { return progress(from + 0.5 * done); }) : Progress();
         };
         made.greatest = greatest_in(volume, channel, empty, all, half(0.0));
-        made.replace({.grid = volume.grid,
-                      .type = ScalarType::i16,
-                      .channels = 4,
-                      .voxels = encoded(volume, channel, empty, all, made.greatest, half(0.5)),
-                      .slope = made.greatest > 0.0F ? static_cast<double>(made.greatest) / most : 1.0,
-                      .source = volume.source});
-        made.top = static_cast<int>(most);
+        made.replace(
+            {.grid = volume.grid,
+             .type = ScalarType::i16,
+             .channels = 4,
+             .voxels = encoded(volume, channel, empty, all, made.greatest, half(0.5)),
+             .slope = made.greatest > 0.0F ? static_cast<double>(made.greatest) / greatest_stored : 1.0,
+             .source = volume.source});
+        made.top = static_cast<int>(greatest_stored);
     }
     made.settle(voxels, {});
 }

@@ -17,7 +17,7 @@
 namespace viscera::volume {
 namespace {
 
-constexpr int reach = 16;  // a change fades by 0.268 per voxel
+constexpr int fade_reach = 16;  // a change fades by 0.268 per voxel
 
 /// Factors of the elimination for a line of n: 1 / (diagonal - the factor before).
 std::vector<double> elimination(int n) {
@@ -251,8 +251,8 @@ void follow(Assets& assets, DerivedSource& coefficients, const Source& voxels, i
             box.first[ring] = 0;
             box.size[ring] = dims[ring];
         }
-        const VoxelBox reached = grown(box, reach, dims);
-        const VoxelBox needed = grown(box, 2 * reach, dims);
+        const VoxelBox reached = grown(box, fade_reach, dims);
+        const VoxelBox needed = grown(box, 2 * fade_reach, dims);
         coefficients.update(reached, of_each([&](int channel) {
                                 std::vector<float> values = stored_values(volume, channel, needed, empty);
                                 // A few voxels: nobody waits.

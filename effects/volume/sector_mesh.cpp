@@ -8,7 +8,7 @@
 namespace viscera::volume {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double facet = pi / 32.0;  // angle of a facet at most
 
 /// The range as a bent box with the axes radius, angle and third coordinate.

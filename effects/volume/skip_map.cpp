@@ -134,7 +134,7 @@ void find_levels(const BrickGrid& bricks, const SmoothRule& rule, float overshoo
 }
 
 /// Box around the bricks that are 1.
-VoxelBox box_around(glm::ivec3 dims, std::span<const std::uint8_t> occupied) {
+VoxelBox box_of_occupied(glm::ivec3 dims, std::span<const std::uint8_t> occupied) {
     glm::ivec3 low = dims;
     glm::ivec3 high(-1);
     for (int z = 0; z < dims.z; ++z) {
@@ -177,7 +177,7 @@ void SkipMap::update(std::span<const BrickLayer> layers, const VoxelBox& crop, c
         std::ranges::transform(occupied_, layer_, occupied_.begin(), std::bit_and());
     }
     occupancy_ = volume::occupancy(occupied_);
-    box_ = box_around(dims_, occupied_);
+    box_ = box_of_occupied(dims_, occupied_);
     kind_ = occupied_;
     const int kinds = find_smooth(bricks, smooth, overshoot);
     any_smooth_ = kinds > 2;

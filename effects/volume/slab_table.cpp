@@ -24,9 +24,9 @@ struct Piece {
 };
 
 /// Extinction * (red, green, blue, 1) between two knots.
-class Segment {
+class TableSegment {
   public:
-    Segment(const Knot& a, const Knot& b, double reference_length_mm)
+    TableSegment(const Knot& a, const Knot& b, double reference_length_mm)
         : a_(a), b_(b), reference_length_mm_(reference_length_mm) {}
 
     [[nodiscard]] glm::dvec4 at(double texel) const {
@@ -44,7 +44,7 @@ class Segment {
 
 /// Mean over [start, end] by Gauss-Legendre quadrature with 8 points. The only singularity of -log(1 - A) is
 /// where A is 1, and pieces are short against their distance from it.
-glm::dvec4 mean_of(const Segment& segment, double start, double end) {
+glm::dvec4 mean_of(const TableSegment& segment, double start, double end) {
     constexpr std::array<double, 4> nodes{0.18343464249564980, 0.52553240991632899, 0.79666647741362674,
                                           0.96028985649753623};
     constexpr std::array<double, 4> weights{0.36268378337836198, 0.31370664587788729, 0.22238103445337447,
@@ -59,7 +59,8 @@ glm::dvec4 mean_of(const Segment& segment, double start, double end) {
 }
 
 /// As mean_of, for an interval that may reach where A is 1: halved until halving changes nothing.
-glm::dvec4 careful_mean_of(const Segment& segment, double start, double end, double tolerance, int halvings) {
+glm::dvec4 careful_mean_of(const TableSegment& segment, double start, double end, double tolerance,
+                           int halvings) {
     const double middle = (start + end) / 2.0;
     const glm::dvec4 left = mean_of(segment, start, middle);
     const glm::dvec4 right = mean_of(segment, middle, end);
@@ -73,19 +74,19 @@ glm::dvec4 careful_mean_of(const Segment& segment, double start, double end, dou
 }
 
 /// Through both ends, with this mean.
-Piece parabola(const Segment& segment, float start, float end, const glm::dvec4& mean) {
+Piece parabola(const TableSegment& segment, float start, float end, const glm::dvec4& mean) {
     const glm::dvec4 a = segment.at(static_cast<double>(start));
     const glm::dvec4 b = segment.at(static_cast<double>(end));
     const glm::dvec4 bend = 3.0 * (a + b) - 6.0 * mean;
     return {start, end, a, b - a - bend, bend};
 }
 
-Piece straight(const Segment& segment, float start, float end) {
+Piece straight(const TableSegment& segment, float start, float end) {
     const glm::dvec4 a = segment.at(static_cast<double>(start));
     return {start, end, a, segment.at(static_cast<double>(end)) - a, glm::dvec4(0.0)};
 }
 
-bool fits(const Piece& piece, const Segment& segment, double tolerance) {
+bool fits(const Piece& piece, const TableSegment& segment, double tolerance) {
     for (const double t : {0.07, 0.21, 0.35, 0.65, 0.79, 0.93}) {
         const glm::dvec4 miss =
             glm::abs(piece.at(t) - segment.at(static_cast<double>(piece.start) + t * piece.width()));
@@ -102,7 +103,7 @@ struct Cut {
     std::size_t most;  ///< pieces
 };
 
-void cut(const Segment& segment, float start, float end, const Cut& how, std::vector<Piece>& pieces) {
+void cut(const TableSegment& segment, float start, float end, const Cut& how, std::vector<Piece>& pieces) {
     if (pieces.size() >= how.most) {
         return;
     }
@@ -138,7 +139,7 @@ std::vector<Piece> pieces_of(const ExtinctionKnots& knots, const TexelRange& ran
     for (std::size_t i = 1; i < knots.knots.size(); ++i) {
         const Knot& a = knots.knots[i - 1];
         const Knot& b = knots.knots[i];
-        const Segment segment(a, b, knots.reference_length_mm);
+        const TableSegment segment(a, b, knots.reference_length_mm);
         const double gap = static_cast<double>(b.texel) - static_cast<double>(a.texel);
         if (gap < SlabTable::step_width(range)) {
             pieces.push_back(straight(segment, a.texel, b.texel));

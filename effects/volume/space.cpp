@@ -7,7 +7,7 @@
 namespace viscera::volume {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 glm::dmat4 turned_and_scaled(double angle, double scale) {
     const double c = std::cos(angle) * scale;

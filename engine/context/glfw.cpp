@@ -16,7 +16,7 @@ namespace viscera {
 
 namespace {
 
-constexpr auto where = "glfw";
+constexpr auto glfw = "glfw";
 constexpr auto library_name = "libglfw.so.3";
 
 struct GlfwApi {
@@ -54,32 +54,32 @@ struct GlfwApi {
 };
 
 GlfwApi GlfwApi::load() {
-    const auto library = SharedLibrary::open(where, {library_name}, "install the Debian package libglfw3");
+    const auto library = SharedLibrary::open(glfw, {library_name}, "install the Debian package libglfw3");
     GlfwApi api;
-    library.require(where, "glfwInit", api.init);
-    library.require(where, "glfwGetError", api.get_error);
-    library.require(where, "glfwDefaultWindowHints", api.default_window_hints);
-    library.require(where, "glfwWindowHint", api.window_hint);
-    library.require(where, "glfwCreateWindow", api.create_window);
-    library.require(where, "glfwDestroyWindow", api.destroy_window);
-    library.require(where, "glfwMakeContextCurrent", api.make_context_current);
-    library.require(where, "glfwGetCurrentContext", api.get_current_context);
-    library.require(where, "glfwGetProcAddress", api.get_proc_address);
-    library.require(where, "glfwSwapInterval", api.swap_interval);
-    library.require(where, "glfwSwapBuffers", api.swap_buffers);
-    library.require(where, "glfwPollEvents", api.poll_events);
-    library.require(where, "glfwWindowShouldClose", api.window_should_close);
-    library.require(where, "glfwSetWindowShouldClose", api.set_window_should_close);
-    library.require(where, "glfwSetWindowTitle", api.set_window_title);
-    library.require(where, "glfwGetFramebufferSize", api.get_framebuffer_size);
-    library.require(where, "glfwGetWindowSize", api.get_window_size);
-    library.require(where, "glfwGetCursorPos", api.get_cursor_pos);
-    library.require(where, "glfwSetWindowUserPointer", api.set_window_user_pointer);
-    library.require(where, "glfwSetCursorPosCallback", api.set_cursor_pos_callback);
-    library.require(where, "glfwSetMouseButtonCallback", api.set_mouse_button_callback);
-    library.require(where, "glfwSetKeyCallback", api.set_key_callback);
-    library.require(where, "glfwSetScrollCallback", api.set_scroll_callback);
-    library.require(where, "glfwSetFramebufferSizeCallback", api.set_framebuffer_size_callback);
+    library.require(glfw, "glfwInit", api.init);
+    library.require(glfw, "glfwGetError", api.get_error);
+    library.require(glfw, "glfwDefaultWindowHints", api.default_window_hints);
+    library.require(glfw, "glfwWindowHint", api.window_hint);
+    library.require(glfw, "glfwCreateWindow", api.create_window);
+    library.require(glfw, "glfwDestroyWindow", api.destroy_window);
+    library.require(glfw, "glfwMakeContextCurrent", api.make_context_current);
+    library.require(glfw, "glfwGetCurrentContext", api.get_current_context);
+    library.require(glfw, "glfwGetProcAddress", api.get_proc_address);
+    library.require(glfw, "glfwSwapInterval", api.swap_interval);
+    library.require(glfw, "glfwSwapBuffers", api.swap_buffers);
+    library.require(glfw, "glfwPollEvents", api.poll_events);
+    library.require(glfw, "glfwWindowShouldClose", api.window_should_close);
+    library.require(glfw, "glfwSetWindowShouldClose", api.set_window_should_close);
+    library.require(glfw, "glfwSetWindowTitle", api.set_window_title);
+    library.require(glfw, "glfwGetFramebufferSize", api.get_framebuffer_size);
+    library.require(glfw, "glfwGetWindowSize", api.get_window_size);
+    library.require(glfw, "glfwGetCursorPos", api.get_cursor_pos);
+    library.require(glfw, "glfwSetWindowUserPointer", api.set_window_user_pointer);
+    library.require(glfw, "glfwSetCursorPosCallback", api.set_cursor_pos_callback);
+    library.require(glfw, "glfwSetMouseButtonCallback", api.set_mouse_button_callback);
+    library.require(glfw, "glfwSetKeyCallback", api.set_key_callback);
+    library.require(glfw, "glfwSetScrollCallback", api.set_scroll_callback);
+    library.require(glfw, "glfwSetFramebufferSizeCallback", api.set_framebuffer_size_callback);
     return api;
 }
 
@@ -107,7 +107,7 @@ class GlfwWindow final : public WindowContext {
             }
         }
         if (window_ == nullptr) {
-            throw Error(ErrorCode::context, where,
+            throw Error(ErrorCode::context, glfw,
                         "no window with OpenGL 3.3 core: " + api_.last_error() +
                             "; its driver comes with the Debian packages libgl1 and libgl1-mesa-dri");
         }
@@ -127,7 +127,7 @@ class GlfwWindow final : public WindowContext {
         CurrentSlot::release();
         api_.make_context_current(window_);
         if (api_.get_current_context() != window_) {
-            throw Error(ErrorCode::context, where, "cannot be made current: " + api_.last_error());
+            throw Error(ErrorCode::context, glfw, "cannot be made current: " + api_.last_error());
         }
         slot_ = CurrentSlot::capture();
     }
@@ -263,13 +263,13 @@ bool is_set(const char* variable) {
 std::unique_ptr<WindowContext> create_window(const ContextOptions& options) {
     // Asked before GLFW is: glfwInit without a display fails for good reason but tells little.
     if (!is_set("DISPLAY") && !is_set("WAYLAND_DISPLAY")) {
-        throw Error(ErrorCode::context, where,
+        throw Error(ErrorCode::context, glfw,
                     "no display: neither DISPLAY nor WAYLAND_DISPLAY is set; use egl or osmesa, or run under "
                     "xvfb-run (Debian packages xvfb and xauth)");
     }
     const GlfwApi api = GlfwApi::load();
     if (api.init() != GLFW_TRUE) {
-        throw Error(ErrorCode::context, where, "the display cannot be opened: " + api.last_error());
+        throw Error(ErrorCode::context, glfw, "the display cannot be opened: " + api.last_error());
     }
     KeepCurrent keep;  // what was current stays so when this fails
     auto window = std::make_unique<GlfwWindow>(api, options);

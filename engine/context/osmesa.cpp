@@ -12,7 +12,7 @@ namespace viscera {
 
 namespace {
 
-constexpr auto where = "osmesa";
+constexpr auto osmesa = "osmesa";
 
 struct OsmesaApi {
     decltype(&OSMesaCreateContextAttribs) create_context = nullptr;
@@ -23,14 +23,14 @@ struct OsmesaApi {
 
     static OsmesaApi load() {
         const auto library = SharedLibrary::open(
-            where, {"libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so"},
+            osmesa, {"libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so"},
             "install the Debian package libosmesa6 (Mesa has none from 25.1 on: use EGL)");
         OsmesaApi api;
-        library.require(where, "OSMesaCreateContextAttribs", api.create_context);
-        library.require(where, "OSMesaDestroyContext", api.destroy_context);
-        library.require(where, "OSMesaMakeCurrent", api.make_current);
-        library.require(where, "OSMesaGetCurrentContext", api.get_current_context);
-        library.require(where, "OSMesaGetProcAddress", api.get_proc_address);
+        library.require(osmesa, "OSMesaCreateContextAttribs", api.create_context);
+        library.require(osmesa, "OSMesaDestroyContext", api.destroy_context);
+        library.require(osmesa, "OSMesaMakeCurrent", api.make_current);
+        library.require(osmesa, "OSMesaGetCurrentContext", api.get_current_context);
+        library.require(osmesa, "OSMesaGetProcAddress", api.get_proc_address);
         return api;
     }
 };
@@ -56,7 +56,7 @@ class OsmesaContext final : public Context {
                                                  0};
         context_ = api_.create_context(attributes.data(), nullptr);
         if (context_ == nullptr) {
-            throw Error(ErrorCode::context, where,
+            throw Error(ErrorCode::context, osmesa,
                         "no OpenGL 3.3 core context: OSMesaCreateContextAttribs failed");
         }
         try {
@@ -72,7 +72,7 @@ class OsmesaContext final : public Context {
     void make_current() override {
         CurrentSlot::release();
         if (api_.make_current(context_, buffer_.data(), GL_UNSIGNED_BYTE, side, side) != GL_TRUE) {
-            throw Error(ErrorCode::context, where, "OSMesaMakeCurrent failed");
+            throw Error(ErrorCode::context, osmesa, "OSMesaMakeCurrent failed");
         }
     }
     void release() override {

@@ -7,6 +7,7 @@
 #include <glm/ext/matrix_transform.hpp>
 
 #include "engine/core/error.h"
+#include "engine/core/finite.h"
 
 namespace viscera {
 namespace {
@@ -21,13 +22,6 @@ void require(bool holds, const char* message) {
     if (!holds) {
         throw Error(ErrorCode::scene, "camera", message);
     }
-}
-
-bool finite(double value) {
-    return std::isfinite(value);
-}
-bool finite(const glm::dvec3& v) {
-    return finite(v.x) && finite(v.y) && finite(v.z);
 }
 
 /// A camera that looks at a point, whatever kind it came from.
@@ -213,11 +207,6 @@ glm::dvec3 View::direction_to(const glm::dvec3& point_mm) const {
 }
 
 View view_of(const glm::dmat4& view, const glm::dmat4& projection) {
-    bool usable = true;
-    for (int column = 0; column < 4; ++column) {
-        usable = usable && finite(glm::dvec3(view[column])) && finite(view[column].w) &&
-                 finite(glm::dvec3(projection[column])) && finite(projection[column].w);
-    }
     const glm::dmat3 turn(view);
     const double size = glm::determinant(turn);
     // Of what is seen of x and y, as a share of itself: squares of the smallest scales vanish.
@@ -225,7 +214,8 @@ View view_of(const glm::dmat4& view, const glm::dmat4& projection) {
         std::max(glm::length(glm::dvec2(projection[0])), glm::length(glm::dvec2(projection[1])));
     const glm::dmat2 flat(glm::dvec2(projection[0]) / scale, glm::dvec2(projection[1]) / scale);
     const double area = glm::determinant(flat);
-    if (!usable || std::abs(std::abs(size) - 1.0) > 1e-3 || !(std::abs(area) > 0.0)) {
+    if (!finite(view) || !finite(projection) || std::abs(std::abs(size) - 1.0) > 1e-3 ||
+        !(std::abs(area) > 0.0)) {
         throw Error(ErrorCode::usage, "a view",
                     "needs a rigid view matrix and a projection of some height and width, all finite");
     }
@@ -263,7 +253,7 @@ std::optional<glm::dvec2> project_to_uv(const View& view, const glm::dvec3& poin
     }
     const glm::dvec4 clip = view.view_projection() * glm::dvec4(point_mm, 1.0);
     const glm::dvec2 uv = 0.5 * glm::dvec2(clip) / clip.w + 0.5;
-    if (!(clip.w > 0.0) || !finite(uv.x) || !finite(uv.y)) {
+    if (!(clip.w > 0.0) || !finite(uv)) {
         return std::nullopt;
     }
     return uv;

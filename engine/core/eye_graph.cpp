@@ -10,9 +10,9 @@ namespace viscera {
 namespace {
 
 /// Finds which passes depend on the eye, then writes the graph that has them twice.
-class Expander {
+class EyeExpander {
   public:
-    Expander(const Graph& graph, std::span<const char> uses_view) : graph_(graph) {
+    EyeExpander(const Graph& graph, std::span<const char> uses_view) : graph_(graph) {
         for (std::size_t p = 0; p < graph.passes.size(); ++p) {
             doubled_.push_back(graph.passes[p].enabled && uses_view[p] != 0 ? 1 : 0);
         }
@@ -192,7 +192,7 @@ std::vector<std::string> EyeGraph::names_of(std::string_view name) const {
 }
 
 EyeGraph expand_eyes(const Graph& graph, std::span<const char> uses_view) {
-    return Expander(graph, uses_view).run();
+    return EyeExpander(graph, uses_view).run();
 }
 
 }  // namespace viscera

@@ -14,17 +14,16 @@
 namespace viscera {
 namespace {
 
-constexpr std::uint32_t none = MeshAdjacency::none;
 constexpr double far_away = std::numeric_limits<double>::max();
 
 /// A chart laid on its plane, lower left corner at 0.
-struct FlatChart {
+struct LaidChart {
     std::vector<std::uint32_t> vertices;  ///< of the mesh
     std::vector<glm::dvec2> places;       ///< in lengths of the mesh
     glm::dvec2 size{0.0};
 };
 
-void project(FlatChart& chart, std::span<const glm::vec3> positions, const glm::dvec3& axis) {
+void project(LaidChart& chart, std::span<const glm::vec3> positions, const glm::dvec3& axis) {
     const glm::dvec3 aside = std::abs(axis.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
     const glm::dvec3 u = glm::normalize(glm::cross(aside, axis));
     const glm::dvec3 v = glm::cross(axis, u);
@@ -37,7 +36,7 @@ void project(FlatChart& chart, std::span<const glm::vec3> positions, const glm::
 
 /// Turns a chart so that the box around it is smallest and lies on its longer side. Directions come from a
 /// walk along a diamond: sums and roots only, so that every machine finds the same one.
-void turn(FlatChart& chart) {
+void turn(LaidChart& chart) {
     constexpr int directions = 48;
     const auto direction = [](int i) {
         const double way = static_cast<double>(i) / directions;
@@ -79,11 +78,11 @@ struct Packing {
     std::vector<glm::dvec2> corners;
 };
 
-Packing pack(std::span<const FlatChart> charts) {
+Packing pack(std::span<const LaidChart> charts) {
     Packing best;
     double area = 0.0;
     double longest = 0.0;
-    for (const FlatChart& chart : charts) {
+    for (const LaidChart& chart : charts) {
         area += chart.size.x * chart.size.y;
         longest = std::max(longest, chart.size.x);
     }
@@ -207,7 +206,7 @@ class AtlasMaker {
     std::span<const glm::vec3> positions_;
     std::span<const std::uint32_t> indices_;
     const MeshCharts& charts_;
-    std::vector<FlatChart> flat_;
+    std::vector<LaidChart> flat_;
     std::vector<std::vector<std::uint32_t>> slots_;  ///< per chart: the atlas vertex of each of its vertices
     MeshAtlas atlas_;
 };

@@ -8,6 +8,8 @@
 
 #include <glm/glm.hpp>
 
+#include "engine/core/finite.h"
+
 namespace viscera {
 
 /// Axis-aligned box in the mesh's own frame. Default: empty (min > max).
@@ -58,6 +60,13 @@ struct CentrelineGraph {
     };
     std::vector<Node> nodes;
     std::vector<Edge> edges;
+    /// Whether an edge joins two different nodes of the graph whose places and radii are finite.
+    [[nodiscard]] bool joins(const Edge& edge) const {
+        const auto sound = [&](std::uint32_t node) {
+            return node < nodes.size() && finite(nodes[node].position_mm) && finite(nodes[node].radius_mm);
+        };
+        return edge.a != edge.b && sound(edge.a) && sound(edge.b);
+    }
     std::string name = "centreline";  ///< for the log: its file
 };
 

@@ -29,10 +29,6 @@ std::string align(const std::vector<Row>& rows) {
     return text;
 }
 
-std::string size_text(int width, int height) {
-    return std::to_string(width) + "x" + std::to_string(height);
-}
-
 /// Targets that a pass samples or makes, comma-separated: "base, last (previous)", "depth (modify)".
 std::string targets_of(const Plan& plan, const PlanPass& pass, bool made) {
     std::string text;
@@ -72,20 +68,24 @@ std::string mebibytes(double bytes) {
     return text.data();
 }
 
-double bytes_of(PixelFormat format, int width, int height) {
+std::string across_and_up(int width, int height) {
+    return std::to_string(width) + "x" + std::to_string(height);
+}
+
+double picture_bytes(PixelFormat format, int width, int height) {
     return static_cast<double>(bytes_per_pixel(format)) * width * height;
 }
 
 std::string memory_line(const Plan& plan) {
     double shared = 0.0;
     for (const PlanTexture& texture : plan.textures) {
-        shared += bytes_of(texture.format, texture.width, texture.height);
+        shared += picture_bytes(texture.format, texture.width, texture.height);
     }
     double apart = 0.0;
     std::size_t count = 0;
     for (const PlanContent& content : plan.contents) {
         if (content.texture && !content.modifies) {
-            apart += bytes_of(content.format, content.width, content.height);
+            apart += picture_bytes(content.format, content.width, content.height);
             ++count;
         }
     }
@@ -93,7 +93,8 @@ std::string memory_line(const Plan& plan) {
            " textures; without sharing " + mebibytes(apart) + " in " + std::to_string(count) + "\n";
 }
 
-std::string quoted(std::string_view text) {
+/// A string of the dot language.
+std::string dot_string(std::string_view text) {
     std::string out = "\"";
     for (const char c : text) {
         if (c == '"' || c == '\\') {
@@ -105,8 +106,8 @@ std::string quoted(std::string_view text) {
 }
 
 std::string pass_node(const PlanPass& pass, std::size_t index) {
-    std::string text = "  p" + std::to_string(index) +
-                       " [shape=box, label=" + quoted(pass.name + " (" + pass.effect + "): " + pass.reason);
+    std::string text = "  p" + std::to_string(index) + " [shape=box, label=" +
+                       dot_string(pass.name + " (" + pass.effect + "): " + pass.reason);
     if (!pass.live) {
         text += ", style=filled, fillcolor=grey85, color=grey50, fontcolor=grey40";
     }
@@ -115,8 +116,8 @@ std::string pass_node(const PlanPass& pass, std::size_t index) {
 
 std::string content_node(const PlanContent& content, std::size_t index, bool output) {
     const std::string label = name_of(content) + ": " + std::string(info(content.format).name) + " " +
-                              size_text(content.width, content.height) + ", " + place_of(content);
-    return "  c" + std::to_string(index) + " [shape=ellipse, label=" + quoted(label) +
+                              across_and_up(content.width, content.height) + ", " + place_of(content);
+    return "  c" + std::to_string(index) + " [shape=ellipse, label=" + dot_string(label) +
            (output ? ", penwidth=3" : "") + "];\n";
 }
 
@@ -159,10 +160,10 @@ std::string to_table(const Plan& plan) {
     std::vector<Row> contents{{"target", "format", "size", "passes", "place"}};
     for (const PlanContent& content : plan.contents) {
         contents.push_back({name_of(content), std::string(info(content.format).name),
-                            size_text(content.width, content.height), lifetime_of(plan, content),
+                            across_and_up(content.width, content.height), lifetime_of(plan, content),
                             place_of(content)});
     }
-    return "frame " + size_text(plan.width, plan.height) + ", " + std::to_string(live) + " of " +
+    return "frame " + across_and_up(plan.width, plan.height) + ", " + std::to_string(live) + " of " +
            std::to_string(plan.passes.size()) + " passes live\n\n" + align(passes) + "\n" + align(contents) +
            "\n" + memory_line(plan);
 }

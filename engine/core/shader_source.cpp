@@ -75,9 +75,9 @@ constexpr std::string_view defines_file = "<defines>";
     return std::filesystem::path(name).lexically_normal().generic_string();
 }
 
-class Expander {
+class IncludeExpander {
   public:
-    Expander(std::span<const std::string> defines, const ShaderReader& reader)
+    IncludeExpander(std::span<const std::string> defines, const ShaderReader& reader)
         : defines_(defines), reader_(reader) {}
 
     [[nodiscard]] ShaderSource expand(std::string_view name) {
@@ -271,7 +271,7 @@ ShaderReader shader_reader_from_folder(std::filesystem::path folder) {
 
 ShaderSource expand_shader(std::string_view name, std::span<const std::string> defines,
                            const ShaderReader& reader) {
-    return Expander(defines, reader).expand(name);
+    return IncludeExpander(defines, reader).expand(name);
 }
 
 std::string map_shader_log(std::string_view log, const ShaderSource& source) {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/core/finite.h"
+
 namespace viscera {
 namespace {
 
@@ -18,7 +20,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 }
 
 void cut_coefficient(double& value, double standard, double high, std::size_t& faults) {
-    if (!std::isfinite(value)) {
+    if (!finite(value)) {
         value = standard;
         ++faults;
         return;
@@ -28,8 +30,7 @@ void cut_coefficient(double& value, double standard, double high, std::size_t& f
 
 void normalise_points(std::vector<TransferPoint>& points, std::size_t& faults) {
     faults += std::erase_if(points, [](const TransferPoint& p) {
-        return !(std::isfinite(p.value) && std::isfinite(p.colour.x) && std::isfinite(p.colour.y) &&
-                 std::isfinite(p.colour.z) && std::isfinite(p.opacity));
+        return !(finite(p.value) && finite(p.colour) && finite(p.opacity));
     });
     for (TransferPoint& p : points) {
         for (int c = 0; c < 3; ++c) {
@@ -44,9 +45,8 @@ void normalise_points(std::vector<TransferPoint>& points, std::size_t& faults) {
 }
 
 void normalise_gradient(std::vector<GradientPoint>& points, std::size_t& faults) {
-    faults += std::erase_if(points, [](const GradientPoint& p) {
-        return !(std::isfinite(p.gradient) && std::isfinite(p.factor));
-    });
+    faults += std::erase_if(points,
+                            [](const GradientPoint& p) { return !(finite(p.gradient) && finite(p.factor)); });
     for (GradientPoint& p : points) {
         p.gradient = cut(p.gradient, 0.0, infinity, faults);
         p.factor = cut(p.factor, 0.0, 1.0, faults);
@@ -58,7 +58,7 @@ void normalise_gradient(std::vector<GradientPoint>& points, std::size_t& faults)
 [[nodiscard]] double fraction(double low, double high, double value) {
     const double width = high - low;
     // Knots at the two ends of the range of double are further apart than any double.
-    return std::isfinite(width) ? (value - low) / width : (value / 2 - low / 2) / (high / 2 - low / 2);
+    return finite(width) ? (value - low) / width : (value / 2 - low / 2) / (high / 2 - low / 2);
 }
 
 }  // namespace
@@ -102,7 +102,7 @@ std::span<const std::string_view> choice_names(Technique) {
 TransferFunction normalised(TransferFunction function, std::size_t& faults) {
     normalise_points(function.points, faults);
     normalise_gradient(function.gradient, faults);
-    if (!(std::isfinite(function.reference_length_mm) && function.reference_length_mm > 0.0)) {
+    if (!(finite(function.reference_length_mm) && function.reference_length_mm > 0.0)) {
         function.reference_length_mm = 1.0;
         ++faults;
     }

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "engine/core/error.h"
+#include "engine/core/finite.h"
 #include "engine/core/pixel_index.h"
 #include "engine/core/size_text.h"
 
@@ -32,10 +33,6 @@ double load(const std::byte* bytes) {
 
 std::string text_of(const glm::dvec3& v) {
     return std::to_string(v.x) + " " + std::to_string(v.y) + " " + std::to_string(v.z);
-}
-
-bool all_finite(const glm::dvec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
 }  // namespace
@@ -115,10 +112,10 @@ void VolumeGrid::validate(std::string_view where) const {
     if (static_cast<double>(dims.x) * dims.y * dims.z > most_voxels) {
         fail("dims are beyond what any machine holds");
     }
-    if (!all_finite(spacing_mm) || !(spacing_mm.x > 0.0 && spacing_mm.y > 0.0 && spacing_mm.z > 0.0)) {
+    if (!finite(spacing_mm) || !(spacing_mm.x > 0.0 && spacing_mm.y > 0.0 && spacing_mm.z > 0.0)) {
         fail("spacing " + text_of(spacing_mm) + ": each must be finite and more than 0 mm");
     }
-    if (!all_finite(origin_mm)) {
+    if (!finite(origin_mm)) {
         fail("origin " + text_of(origin_mm) + " is not finite");
     }
     for (int axis = 0; axis < 3; ++axis) {
@@ -158,10 +155,10 @@ void Volume::validate() const {
     if (channels < 1 || channels > 4) {
         fail("channels: " + std::to_string(channels) + " are not 1 to 4");
     }
-    if (!std::isfinite(slope) || slope == 0.0) {
+    if (!finite(slope) || slope == 0.0) {
         fail("slope " + std::to_string(slope) + " must be finite and not 0");
     }
-    if (!std::isfinite(intercept)) {
+    if (!finite(intercept)) {
         fail("intercept is not finite");
     }
     const std::size_t due = grid.voxel_count() * static_cast<std::size_t>(channels) * bytes_of(type);

@@ -12,7 +12,7 @@ namespace viscera {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double slack = 1e-9;  // of angles that files and scenes give in degrees
 
 /// Places of radius, angle and the third coordinate in (i, j, k).

@@ -255,7 +255,7 @@ constexpr std::array<GLenum, 4> hints{GL_LINE_SMOOTH_HINT, GL_POLYGON_SMOOTH_HIN
 
 // Framebuffers before their draw buffers; the vertex array before nothing else (its index buffer is its own);
 // the program before feedback, which can only go on with the program that it began with.
-constexpr std::array rows{
+constexpr std::array bindings{
     HostStateRow{"framebuffers", 2, false, always,
                  [](const Functions& gl, Values out) {
                      out[0] = read_int(gl, GL_DRAW_FRAMEBUFFER_BINDING);
@@ -355,7 +355,7 @@ constexpr std::array rows{
 }  // namespace
 
 std::span<const HostStateRow> binding_rows() {
-    return rows;
+    return bindings;
 }
 
 }  // namespace viscera::gl

@@ -106,7 +106,7 @@ void save_polygon_offset(const Functions& gl, Values out) {
 
 using Objects = PoisonObjects;
 
-constexpr std::array rows{
+constexpr std::array fixed_rows{
     float_row<GL_BLEND_COLOR, 4>(
         "blend colour",
         [](const Functions& gl, Saved in) {
@@ -232,7 +232,7 @@ constexpr std::array rows{
 }  // namespace
 
 std::span<const HostStateRow> fixed_state_rows() {
-    return rows;
+    return fixed_rows;
 }
 
 }  // namespace viscera::gl

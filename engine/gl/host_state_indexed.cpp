@@ -194,7 +194,7 @@ void restore_colour_mask(const Functions& gl, Saved in) {
     }
 }
 
-constexpr std::array rows{
+constexpr std::array indexed_rows{
     HostStateRow{"viewport", 4 * std::size_t{viewports}, true, always, save_viewport, restore_viewport,
                  poison_viewport},
     HostStateRow{"depth range", 2 * std::size_t{viewports}, true, always, save_depth_range,
@@ -218,7 +218,7 @@ constexpr std::array rows{
 }  // namespace
 
 std::span<const HostStateRow> indexed_state_rows() {
-    return rows;
+    return indexed_rows;
 }
 
 }  // namespace viscera::gl

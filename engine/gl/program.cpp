@@ -131,8 +131,8 @@ std::string program_log(const Functions& gl, GLuint program) {
 }
 
 /// Compiles one stage; what the driver remarked is added to `warnings`.
-ShaderHandle compile(const Functions& gl, GLenum stage, const ShaderSource& source, std::string_view label,
-                     std::string& warnings) {
+ShaderHandle compile_stage(const Functions& gl, GLenum stage, const ShaderSource& source,
+                           std::string_view label, std::string& warnings) {
     ShaderHandle shader = ShaderHandle::own(gl, gl.CreateShader(stage));
     const char* text = source.text.data();
     const auto length = static_cast<GLint>(source.text.size());
@@ -156,11 +156,11 @@ Program::Program(const Functions& gl, std::string_view label)
 Program::Program(const Functions& gl, const ShaderSource& vertex, const ShaderSource& fragment,
                  std::string_view label, std::span<const std::string> feedback)
     : Program(gl, label) {
-    const ShaderHandle vertex_shader = compile(gl, GL_VERTEX_SHADER, vertex, label, warnings_);
+    const ShaderHandle vertex_shader = compile_stage(gl, GL_VERTEX_SHADER, vertex, label, warnings_);
     std::optional<ShaderHandle> fragment_shader;
     gl.AttachShader(id(), vertex_shader.id());
     if (!fragment.text.empty()) {
-        fragment_shader = compile(gl, GL_FRAGMENT_SHADER, fragment, label, warnings_);
+        fragment_shader = compile_stage(gl, GL_FRAGMENT_SHADER, fragment, label, warnings_);
         gl.AttachShader(id(), fragment_shader->id());
     }
     for (const AttributeName& entry : attribute_names) {
@@ -184,7 +184,7 @@ Program::Program(const Functions& gl, const ShaderSource& vertex, const ShaderSo
 
 Program Program::make_compute(const Functions& gl, const ShaderSource& compute, std::string_view label) {
     Program program(gl, label);
-    const ShaderHandle shader = compile(gl, GL_COMPUTE_SHADER, compute, label, program.warnings_);
+    const ShaderHandle shader = compile_stage(gl, GL_COMPUTE_SHADER, compute, label, program.warnings_);
     gl.AttachShader(program.id(), shader.id());
     program.link();
     gl.DetachShader(program.id(), shader.id());

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -7,6 +6,7 @@
 #include <tuple>
 
 #include "engine/core/error.h"
+#include "engine/core/finite.h"
 #include "engine/io/file_bytes.h"
 #include "engine/io/mesh.h"
 #include "engine/io/vtp.h"
@@ -18,7 +18,7 @@ namespace {
 using Json = nlohmann::json;
 using Node = CentrelineGraph::Node;
 
-constexpr std::uint32_t dropped = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t dropped_node = std::numeric_limits<std::uint32_t>::max();
 
 [[noreturn]] void fail(const std::filesystem::path& file, const std::string& key,
                        const std::string& message) {
@@ -32,12 +32,12 @@ class Builder {
 
     /// Adds the next point of the file; later edges name it by its place in that order.
     void add_node(const glm::dvec3& position, double radius) {
-        if (!std::isfinite(position.x) || !std::isfinite(position.y) || !std::isfinite(position.z)) {
+        if (!finite(position)) {
             ++bad_nodes_;
-            node_of_.push_back(dropped);
+            node_of_.push_back(dropped_node);
             return;
         }
-        if (!(std::isfinite(radius) && radius >= 0.0)) {
+        if (!(finite(radius) && radius >= 0.0)) {
             ++bad_radii_;
             radius = 0.0;
         }
@@ -54,8 +54,8 @@ class Builder {
     }
 
     void add_edge(std::uint64_t a, std::uint64_t b) {
-        if (a >= node_of_.size() || b >= node_of_.size() || node_of_[a] == dropped ||
-            node_of_[b] == dropped) {
+        if (a >= node_of_.size() || b >= node_of_.size() || node_of_[a] == dropped_node ||
+            node_of_[b] == dropped_node) {
             ++bad_edges_;
             return;
         }

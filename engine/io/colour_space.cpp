@@ -7,7 +7,7 @@
 namespace viscera::io {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 const glm::dvec3 white_d65(0.9505, 1.0, 1.089);
 // IEC 61966-2-1, linear sRGB to XYZ and back; given by columns.
 const glm::dmat3 rgb_to_xyz(0.4124, 0.2126, 0.0193, 0.3576, 0.7152, 0.1192, 0.1805, 0.0722, 0.9505);
@@ -17,7 +17,7 @@ double decode(double c) {
     return c > 0.04045 ? std::pow((c + 0.055) / 1.055, 2.4) : c / 12.92;
 }
 
-double encode(double c) {
+double encode_srgb(double c) {
     return c > 0.0031308 ? 1.055 * std::pow(c, 1.0 / 2.4) - 0.055 : 12.92 * c;
 }
 
@@ -41,7 +41,7 @@ glm::dvec3 from_lab(const glm::dvec3& lab) {
             const double cube = f * f * f;
             return cube > 0.008856 ? cube : (f - 16.0 / 116.0) / 7.787;
         });
-    const glm::dvec3 rgb = each(xyz_to_rgb * xyz, encode);
+    const glm::dvec3 rgb = each(xyz_to_rgb * xyz, encode_srgb);
     return rgb / std::max({rgb.x, rgb.y, rgb.z, 1.0});
 }
 

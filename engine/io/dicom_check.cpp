@@ -26,7 +26,7 @@ constexpr std::uint32_t columns = 0x00280011U;
 constexpr std::uint32_t bits_allocated = 0x00280100U;
 constexpr std::uint32_t pixel_data = 0x7fe00010U;
 
-struct Element {
+struct DataElement {
     std::uint32_t tag = 0;
     std::string_view type;  ///< empty where the file does not say
     std::uint32_t length = 0;
@@ -131,7 +131,7 @@ class Walk {
   private:
     /// The group that tells how the others are stored; its first element is its length.
     void meta() {
-        const Element first = next();
+        const DataElement first = next();
         if (first.tag != 0x00020000U || first.type != "UL" || first.length != 4) {
             fail("its file meta information has no length");
         }
@@ -139,7 +139,7 @@ class Walk {
         group.rest_ = rest_.substr(4, number<std::uint32_t>(0));
         static_cast<void>(take(4 + group.rest_.size()));
         for (std::uint32_t last = first.tag; !group.rest_.empty();) {
-            const Element element = group.next();
+            const DataElement element = group.next();
             if (element.tag >> 16U != 2 || element.tag <= last) {
                 fail("its file meta information is damaged");
             }
@@ -181,8 +181,8 @@ class Walk {
         return value;
     }
 
-    [[nodiscard]] Element next() {
-        Element element;
+    [[nodiscard]] DataElement next() {
+        DataElement element;
         element.tag = peek_group() << 16U | number<std::uint16_t>(2);
         constexpr std::uint32_t delimiters = 0xfffeU;
         if (!explicit_ || element.tag >> 16U == delimiters) {
@@ -212,7 +212,7 @@ class Walk {
     }
 
     /// Numbers have whole values; some that lay out the picture have one.
-    void check_value(const Element& element, std::string_view value) const {
+    void check_value(const DataElement& element, std::string_view value) const {
         struct Width {
             std::string_view type;
             std::size_t bytes;
@@ -242,7 +242,7 @@ class Walk {
         return value.size() < 2 ? std::uint16_t{0} : in_order<std::uint16_t>(value.data(), order_);
     }
 
-    void note_size(const Element& element, std::string_view value) {
+    void note_size(const DataElement& element, std::string_view value) {
         if (element.tag == frames) {
             const auto first = std::min(value.find_first_not_of(' '), value.size());
             std::from_chars(value.data() + first, value.data() + value.size(), frames_);
@@ -274,7 +274,7 @@ class Walk {
         walk.rest_ = inside;
         std::uint32_t last = 0;
         while (!walk.rest_.empty()) {
-            const Element element = walk.next();
+            const DataElement element = walk.next();
             if (element.tag >> 16U == item >> 16U) {
                 fail("holds an item outside of a sequence");
             }
@@ -286,7 +286,7 @@ class Walk {
         }
     }
 
-    void value(const Element& element, int depth) {
+    void value(const DataElement& element, int depth) {
         if (element.length == undefined_length) {
             if (element.tag == pixel_data) {
                 fragments();
@@ -314,7 +314,7 @@ class Walk {
         }
     }
 
-    void one_item(const Element& element, int depth) {
+    void one_item(const DataElement& element, int depth) {
         if (element.tag != item) {
             fail("a sequence holds something else than items");
         }
@@ -322,7 +322,7 @@ class Walk {
             elements(take(element.length), depth + 1);
             return;
         }
-        for (Element inner = next(); inner.tag != item_end; inner = next()) {
+        for (DataElement inner = next(); inner.tag != item_end; inner = next()) {
             value(inner, depth + 1);
         }
     }
@@ -332,14 +332,14 @@ class Walk {
         if (depth > most_depth) {
             fail("nests its sequences too deep");
         }
-        for (Element element = next(); element.tag != sequence_end; element = next()) {
+        for (DataElement element = next(); element.tag != sequence_end; element = next()) {
             one_item(element, depth + 1);
         }
     }
 
     /// Packed pictures: pieces without elements of their own.
     void fragments() {
-        for (Element element = next(); element.tag != sequence_end; element = next()) {
+        for (DataElement element = next(); element.tag != sequence_end; element = next()) {
             if (element.tag != item || element.length == undefined_length) {
                 fail("its packed pixels are damaged");
             }

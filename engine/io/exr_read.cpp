@@ -26,9 +26,9 @@ namespace viscera::io {
 
 namespace {
 
-class MemoryStream : public Imf::IStream {
+class MemoryInput : public Imf::IStream {
   public:
-    explicit MemoryStream(const std::string& bytes) : Imf::IStream("memory"), bytes_(bytes) {}
+    explicit MemoryInput(const std::string& bytes) : Imf::IStream("memory"), bytes_(bytes) {}
 
     bool read(char* out, int count) override {
         const auto size = static_cast<std::size_t>(count);
@@ -218,7 +218,7 @@ std::vector<ExrPart> read_exr(const std::filesystem::path& file) {
     const std::string bytes = read_file(file);
     std::vector<ExrPart> parts;
     try {
-        MemoryStream stream(bytes);
+        MemoryInput stream(bytes);
         Imf::MultiPartInputFile input(stream);
         for (int i = 0; i < input.parts(); ++i) {
             read_part(input, i, bytes.size(), parts);

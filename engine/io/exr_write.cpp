@@ -24,9 +24,9 @@ namespace viscera::io {
 namespace {
 
 /// Collects the encoded file in memory, so that one write puts it on disk whole.
-class MemoryStream : public Imf::OStream {
+class MemoryOutput : public Imf::OStream {
   public:
-    MemoryStream() : Imf::OStream("memory") {}
+    MemoryOutput() : Imf::OStream("memory") {}
 
     void write(const char* bytes, int count) override {
         const auto size = static_cast<std::size_t>(count);
@@ -165,7 +165,7 @@ void write_pixels(File& file, const ExrPart& part) {
     file.writePixels(part.image.height);
 }
 
-void encode(Imf::OStream& stream, std::span<const ExrPart> parts, ExrCompression compression) {
+void encode_exr(Imf::OStream& stream, std::span<const ExrPart> parts, ExrCompression compression) {
     const Imath::Box2i display = display_window(parts);
     if (parts.size() == 1) {
         Imf::OutputFile file(stream, make_header(parts[0], display, compression));
@@ -194,9 +194,9 @@ std::span<const std::string_view> choice_names(ExrCompression) {
 void write_exr(const std::filesystem::path& file, std::span<const ExrPart> parts,
                ExrCompression compression) {
     check(file, parts);
-    MemoryStream stream;
+    MemoryOutput stream;
     try {
-        encode(stream, parts, compression);
+        encode_exr(stream, parts, compression);
     } catch (const std::exception& error) {
         throw Error(ErrorCode::file, file.string(), std::string("cannot be encoded: ") + error.what());
     }

@@ -22,7 +22,7 @@ namespace {
 using Json = nlohmann::json;
 
 template <class Vector>
-Json to_json(const Vector& p) {
+Json numbers_json(const Vector& p) {
     return {p.x, p.y, p.z};
 }
 
@@ -79,7 +79,7 @@ Json describe_mesh(const MeshData& mesh) {
         return result;
     }
     const Bounds bounds = mesh.bounds();
-    result["bounds_mm"] = {{"min", to_json(bounds.min)}, {"max", to_json(bounds.max)}};
+    result["bounds_mm"] = {{"min", numbers_json(bounds.min)}, {"max", numbers_json(bounds.max)}};
     const bool closed = is_closed(mesh);
     result["closed"] = closed;
     if (closed) {
@@ -219,8 +219,8 @@ Json describe_volume(const std::filesystem::path& file, Log& log) {
         channels.push_back(describe_values(statistics(volume, channel, bins)));
     }
     Json result = {{"dims", {grid.dims.x, grid.dims.y, grid.dims.z}},
-                   {"spacing_mm", to_json(grid.spacing_mm)},
-                   {"origin_mm", to_json(grid.origin_mm)},
+                   {"spacing_mm", numbers_json(grid.spacing_mm)},
+                   {"origin_mm", numbers_json(grid.origin_mm)},
                    {"direction", std::move(direction)},
                    {"type", to_string(volume.type)},
                    {"slope", volume.slope},

@@ -36,7 +36,8 @@ const Json& list_of(const Json& document, const char* key) {
     return *found;
 }
 
-std::optional<std::uint64_t> whole_number(const Json& object, const char* key, const std::string& pointer) {
+std::optional<std::uint64_t> whole_number_at(const Json& object, const char* key,
+                                             const std::string& pointer) {
     constexpr std::uint64_t most = std::uint64_t{1} << 32U;
     const auto found = object.find(key);
     if (found == object.end()) {
@@ -49,7 +50,7 @@ std::optional<std::uint64_t> whole_number(const Json& object, const char* key, c
 }
 
 std::uint64_t needed_number(const Json& object, const char* key, const std::string& pointer) {
-    const auto number = whole_number(object, key, pointer);
+    const auto number = whole_number_at(object, key, pointer);
     if (!number) {
         fail(pointer + "/" + key, "is missing");
     }
@@ -119,12 +120,12 @@ class Checker {
             const std::string pointer = "/bufferViews/" + std::to_string(i);
             const std::size_t buffer = check_index(needed_number(views[i], "buffer", pointer),
                                                    buffer_bytes_.size(), pointer + "/buffer", "buffer");
-            const std::uint64_t offset = whole_number(views[i], "byteOffset", pointer).value_or(0);
+            const std::uint64_t offset = whole_number_at(views[i], "byteOffset", pointer).value_or(0);
             const std::uint64_t length = needed_number(views[i], "byteLength", pointer);
             if (length == 0 || offset + length > buffer_bytes_[buffer]) {
                 fail(pointer, "reaches beyond its buffer");
             }
-            const auto stride = whole_number(views[i], "byteStride", pointer);
+            const auto stride = whole_number_at(views[i], "byteStride", pointer);
             if (stride && (*stride < 4 || *stride > 252 || *stride % 4 != 0)) {
                 fail(pointer + "/byteStride", "must be a multiple of 4 from 4 to 252");
             }
@@ -136,9 +137,9 @@ class Checker {
     void check_fit(const Json& object, std::uint64_t count, std::uint64_t bytes, const std::string& pointer) {
         const std::size_t view = check_index(needed_number(object, "bufferView", pointer), view_bytes_.size(),
                                              pointer + "/bufferView", "buffer view");
-        const std::uint64_t offset = whole_number(object, "byteOffset", pointer).value_or(0);
+        const std::uint64_t offset = whole_number_at(object, "byteOffset", pointer).value_or(0);
         const auto stride =
-            whole_number(document_["bufferViews"][view], "byteStride", pointer).value_or(bytes);
+            whole_number_at(document_["bufferViews"][view], "byteStride", pointer).value_or(bytes);
         if (stride < bytes) {
             fail(pointer, "its elements are longer than the byte stride");
         }
@@ -201,7 +202,7 @@ class Checker {
             !primitive["attributes"].is_object()) {
             fail(pointer + "/attributes", "must be an object");
         }
-        if (whole_number(primitive, "mode", pointer).value_or(4) > 6) {
+        if (whole_number_at(primitive, "mode", pointer).value_or(4) > 6) {
             fail(pointer + "/mode", "must be from 0 to 6");
         }
         const Json& attributes = primitive["attributes"];
@@ -270,7 +271,7 @@ class Checker {
             check_numbers(nodes[i], "translation", 3, pointer);
             check_numbers(nodes[i], "rotation", 4, pointer);
             check_numbers(nodes[i], "scale", 3, pointer);
-            if (const auto mesh = whole_number(nodes[i], "mesh", pointer)) {
+            if (const auto mesh = whole_number_at(nodes[i], "mesh", pointer)) {
                 check_index(*mesh, meshes, pointer + "/mesh", "mesh");
             }
             for (const std::size_t child : index_list(nodes[i], "children", nodes.size(), pointer)) {
@@ -325,7 +326,7 @@ class Checker {
         for (std::size_t i = 0; i < scenes.size(); ++i) {
             static_cast<void>(index_list(scenes[i], "nodes", nodes, "/scenes/" + std::to_string(i)));
         }
-        if (const auto scene = whole_number(document_, "scene", "")) {
+        if (const auto scene = whole_number_at(document_, "scene", "")) {
             check_index(*scene, scenes.size(), "/scene", "scene");
         }
     }

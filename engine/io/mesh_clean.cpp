@@ -1,27 +1,20 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
 #include <limits>
 #include <span>
 #include <string>
 #include <unordered_map>
 
 #include "engine/core/error.h"
+#include "engine/core/finite.h"
 #include "engine/io/mesh_readers.h"
 
 namespace viscera::io {
 
 namespace {
 
-constexpr std::uint32_t dropped = std::numeric_limits<std::uint32_t>::max();
-
-bool finite(const glm::vec3& p) {
-    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-}
-bool finite(const glm::vec2& p) {
-    return std::isfinite(p.x) && std::isfinite(p.y);
-}
+constexpr std::uint32_t dropped_vertex = std::numeric_limits<std::uint32_t>::max();
 
 void count(Log& log, std::string_view where, const std::string& what, std::size_t number) {
     if (number > 0) {
@@ -149,7 +142,7 @@ void keep(std::vector<T>& values, const std::vector<std::uint32_t>& new_index, s
     }
     std::vector<T> kept(left);
     for (std::size_t v = 0; v < values.size(); ++v) {
-        if (new_index[v] != dropped) {
+        if (new_index[v] != dropped_vertex) {
             kept[new_index[v]] = values[v];
         }
     }
@@ -157,13 +150,13 @@ void keep(std::vector<T>& values, const std::vector<std::uint32_t>& new_index, s
 }
 
 void drop_unused_vertices(MeshData& mesh) {
-    std::vector<std::uint32_t> new_index(mesh.positions.size(), dropped);
+    std::vector<std::uint32_t> new_index(mesh.positions.size(), dropped_vertex);
     for (const std::uint32_t index : mesh.indices) {
         new_index[index] = 0;
     }
     std::uint32_t left = 0;
     for (std::uint32_t& index : new_index) {
-        index = index == dropped ? dropped : left++;
+        index = index == dropped_vertex ? dropped_vertex : left++;
     }
     for (std::uint32_t& index : mesh.indices) {
         index = new_index[index];
@@ -187,7 +180,7 @@ void repair_attributes(MeshData& mesh, std::string_view where, Log& log) {
     std::size_t bad_scalars = 0;
     for (VertexScalars& scalars : mesh.scalars) {
         for (float& value : scalars.values) {
-            if (!std::isfinite(value)) {
+            if (!finite(value)) {
                 value = 0.0F;
                 ++bad_scalars;
             }
@@ -208,7 +201,7 @@ void complete_normals(MeshData& mesh, std::string_view where, Log& log) {
     for (std::size_t v = 0; v < mesh.normals.size(); ++v) {
         const glm::dvec3 normal(mesh.normals[v]);
         const double length = glm::length(normal);
-        if (std::isfinite(length) && length > 0.0) {
+        if (finite(length) && length > 0.0) {
             mesh.normals[v] = glm::vec3(normal / length);
             continue;
         }
@@ -225,7 +218,7 @@ void complete_normals(MeshData& mesh, std::string_view where, Log& log) {
 
 MeshData clean(RawMesh raw, double scale_mm_per_unit, std::string_view where, Log& log) {
     MeshData mesh = std::move(raw.mesh);
-    if (mesh.positions.size() >= dropped) {
+    if (mesh.positions.size() >= dropped_vertex) {
         throw Error(ErrorCode::limit, std::string(where), "has more vertices than 32-bit indices can name");
     }
     scale_positions(mesh, scale_mm_per_unit);

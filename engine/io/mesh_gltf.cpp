@@ -166,10 +166,6 @@ glm::dmat4 local_transform(const tinygltf::Node& node) {
     return matrix;
 }
 
-glm::dvec3 tuple3(const std::vector<double>& values, std::size_t i) {
-    return {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
-}
-
 /// Corners of a primitive's triangles; empty for points and lines.
 std::vector<std::uint32_t> triangles_of(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
                                         std::size_t vertices) {
@@ -255,9 +251,9 @@ MeshData convert(const tinygltf::Model& model, const tinygltf::Primitive& primit
     return mesh;
 }
 
-class Scene {
+class GltfScene {
   public:
-    Scene(const tinygltf::Model& model, const std::filesystem::path& file, Log& log)
+    GltfScene(const tinygltf::Model& model, const std::filesystem::path& file, Log& log)
         : model_(model), file_(file), log_(log) {}
 
     std::vector<RawMesh> read() {
@@ -351,7 +347,7 @@ class Scene {
 
 std::vector<RawMesh> read_gltf(const std::filesystem::path& file, Log& log) {
     const tinygltf::Model model = load_model(file, log);
-    return Scene(model, file, log).read();
+    return GltfScene(model, file, log).read();
 }
 
 }  // namespace viscera::io

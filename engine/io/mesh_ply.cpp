@@ -60,15 +60,15 @@ struct Property {
     const Type* count_type = nullptr;  ///< none: one value; else a list with its length before it
 };
 
-struct Element {
+struct PlyElement {
     std::string name;
     std::uint64_t count = 0;
     std::vector<Property> properties;
 };
 
-struct Header {
+struct PlyHeader {
     Storage storage = Storage::text;
-    std::vector<Element> elements;
+    std::vector<PlyElement> elements;
 };
 
 Storage storage_named(std::string_view name) {
@@ -81,8 +81,8 @@ Storage storage_named(std::string_view name) {
     return name == "binary_big_endian" ? Storage::big_endian : Storage::little_endian;
 }
 
-Element parse_element(std::string_view line) {
-    Element element;
+PlyElement parse_element(std::string_view line) {
+    PlyElement element;
     element.name = take_word(line);
     const std::string_view count = take_word(line);
     const auto [end, error] = std::from_chars(count.data(), count.data() + count.size(), element.count);
@@ -105,8 +105,8 @@ Property parse_property(std::string_view line) {
 }
 
 /// Takes the header off the front of `bytes`.
-Header take_header(std::string_view& bytes) {
-    Header header;
+PlyHeader take_header(std::string_view& bytes) {
+    PlyHeader header;
     std::string_view first = take_line(bytes);
     if (take_word(first) != "ply") {
         throw std::runtime_error("it does not begin with 'ply'");
@@ -214,7 +214,7 @@ Store store_of(std::string_view name) {
     return found == targets.end() ? nullptr : found->store;
 }
 
-void read_vertices(const Element& element, Body& body, MeshData& mesh) {
+void read_vertices(const PlyElement& element, Body& body, MeshData& mesh) {
     if (element.properties.empty() || !body.may_hold(element.count, element.properties)) {
         throw std::runtime_error("it promises more vertices than it holds");
     }
@@ -256,7 +256,7 @@ void read_vertices(const Element& element, Body& body, MeshData& mesh) {
 }
 
 /// Reads an element other than vertices; lists of corners become triangles.
-void read_element(const Element& element, Body& body, MeshData& mesh) {
+void read_element(const PlyElement& element, Body& body, MeshData& mesh) {
     constexpr std::uint32_t out_of_range = std::numeric_limits<std::uint32_t>::max();
     if (!body.may_hold(element.count, element.properties)) {
         throw std::runtime_error("it promises more of '" + element.name + "' than it holds");
@@ -286,11 +286,11 @@ std::vector<RawMesh> read_ply(const std::filesystem::path& file, Log&) {
     const std::string bytes = read_file(file);
     try {
         std::string_view rest = bytes;
-        const Header header = take_header(rest);
+        const PlyHeader header = take_header(rest);
         Body body(rest, header.storage);
         RawMesh raw;
         raw.mesh.name = file.stem().string();
-        for (const Element& element : header.elements) {
+        for (const PlyElement& element : header.elements) {
             if (element.name == "vertex" && raw.mesh.positions.empty()) {
                 read_vertices(element, body, raw.mesh);
             } else {

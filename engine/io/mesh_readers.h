@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include <glm/glm.hpp>
+
 #include "engine/core/log.h"
 #include "engine/core/mesh_data.h"
 #include "engine/io/mesh.h"
@@ -34,6 +36,11 @@ struct RawMesh {
 /// As merge(), but for raw meshes too: an index out of range stays so, and normals stay only if every mesh
 /// has them.
 [[nodiscard]] MeshData concatenate(std::span<const MeshData> meshes);
+
+/// The i-th three of a list of numbers.
+[[nodiscard]] inline glm::dvec3 tuple3(std::span<const double> values, std::size_t i) {
+    return {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
+}
 
 /// Splits a strip of `count` vertices into triangles of one orientation; `vertex(i)` gives the i-th index.
 template <class Vertex>

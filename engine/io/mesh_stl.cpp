@@ -13,10 +13,10 @@ namespace viscera::io {
 
 namespace {
 
-constexpr std::size_t header_bytes = 84;
+constexpr std::size_t stl_header_bytes = 84;
 constexpr std::size_t triangle_bytes = 50;
 
-std::uint32_t word_at(std::string_view bytes, std::size_t offset) {
+std::uint32_t stl_word(std::string_view bytes, std::size_t offset) {
     std::uint32_t value = 0;
     for (std::size_t i = 0; i < 4; ++i) {
         value |= static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[offset + i])) << (8U * i);
@@ -26,18 +26,19 @@ std::uint32_t word_at(std::string_view bytes, std::size_t offset) {
 
 /// Binary files may begin with "solid" too: the size tells.
 bool is_binary(std::string_view bytes) {
-    return bytes.size() >= header_bytes &&
-           bytes.size() - header_bytes == triangle_bytes * std::size_t{word_at(bytes, header_bytes - 4)};
+    return bytes.size() >= stl_header_bytes &&
+           bytes.size() - stl_header_bytes ==
+               triangle_bytes * std::size_t{stl_word(bytes, stl_header_bytes - 4)};
 }
 
 /// The stored normals, one per triangle, are left alone: the winding says the same.
 std::vector<glm::vec3> read_binary(std::string_view bytes) {
     std::vector<glm::vec3> corners;
-    corners.reserve((bytes.size() - header_bytes) / triangle_bytes * 3);
-    for (std::size_t at = header_bytes; at < bytes.size(); at += triangle_bytes) {
+    corners.reserve((bytes.size() - stl_header_bytes) / triangle_bytes * 3);
+    for (std::size_t at = stl_header_bytes; at < bytes.size(); at += triangle_bytes) {
         for (std::size_t k = 1; k <= 3; ++k) {
             const auto value = [&](std::size_t c) {
-                return std::bit_cast<float>(word_at(bytes, at + 12 * k + 4 * c));
+                return std::bit_cast<float>(stl_word(bytes, at + 12 * k + 4 * c));
             };
             corners.emplace_back(value(0), value(1), value(2));
         }

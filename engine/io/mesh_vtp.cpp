@@ -13,10 +13,6 @@ std::span<const std::uint32_t> cell(const VtkCells& cells, std::size_t i) {
     return std::span(cells.connectivity).subspan(begin, cells.offsets[i] - begin);
 }
 
-glm::vec3 tuple3(const std::vector<double>& values, std::size_t i) {
-    return glm::vec3(glm::dvec3(values[3 * i], values[3 * i + 1], values[3 * i + 2]));
-}
-
 void convert_point_data(const VtpPiece& piece, MeshData& mesh) {
     for (const VtkArray& array : piece.point_data) {
         if (array.components == 1) {
@@ -24,7 +20,7 @@ void convert_point_data(const VtpPiece& piece, MeshData& mesh) {
         } else if (array.components == 3 && (array.name == piece.normals_name || array.name == "Normals")) {
             mesh.normals.resize(piece.points);
             for (std::size_t v = 0; v < piece.points; ++v) {
-                mesh.normals[v] = tuple3(array.values, v);
+                mesh.normals[v] = glm::vec3(tuple3(array.values, v));
             }
         } else if (array.components == 2 && array.name == piece.uvs_name) {
             mesh.uvs.resize(piece.points);
@@ -39,7 +35,7 @@ MeshData convert(const VtpPiece& piece) {
     MeshData mesh;
     mesh.positions.resize(piece.points);
     for (std::size_t v = 0; v < piece.points; ++v) {
-        mesh.positions[v] = tuple3(piece.positions, v);
+        mesh.positions[v] = glm::vec3(tuple3(piece.positions, v));
     }
     convert_point_data(piece, mesh);
     for (std::size_t i = 0; i < piece.polys.offsets.size(); ++i) {

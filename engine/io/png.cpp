@@ -29,12 +29,12 @@ float clamp01(float value) {
 }
 
 /// What of an Image becomes which PNG channels.
-struct Layout {
+struct ChannelLayout {
     int channels = 1;  ///< of the PNG: 1, 3 or 4
     int colour_type = PNG_COLOR_TYPE_GRAY;
 };
 
-Layout layout_of(const Image& image, const PngOptions& options) {
+ChannelLayout layout_of(const Image& image, const PngOptions& options) {
     if (image.channels() == 1) {
         return {1, PNG_COLOR_TYPE_GRAY};
     }
@@ -133,8 +133,8 @@ bool write(png_structp png, png_infop info, png_uint_32 width, png_uint_32 heigh
     return true;
 }
 
-std::string encode(const Image& image, const PngOptions& options) {
-    const Layout layout = layout_of(image, options);
+std::string encode_png(const Image& image, const PngOptions& options) {
+    const ChannelLayout layout = layout_of(image, options);
     const std::vector<png_byte> samples = samples_of(image, options, layout.channels);
     Output output;
     const Writer writer(output);
@@ -155,7 +155,7 @@ void write_png(const std::filesystem::path& file, const Image& image, const PngO
     }
     std::string bytes;
     try {
-        bytes = encode(image, options);
+        bytes = encode_png(image, options);
     } catch (const std::exception& error) {
         throw Error(ErrorCode::file, file.string(), std::string("cannot be encoded: ") + error.what());
     }

@@ -22,7 +22,7 @@ bool begins_as_nifti(const std::filesystem::path& file) {
     return std::ranges::find(sizes, start) != sizes.end();
 }
 
-bool contains(const std::filesystem::path& file, std::initializer_list<std::string_view> words) {
+bool has_word(const std::filesystem::path& file, std::initializer_list<std::string_view> words) {
     const std::string start = lower(first_bytes(file, std::size_t{1} << 16U));
     return std::ranges::all_of(words, [&](std::string_view word) { return start.find(word) != start.npos; });
 }
@@ -137,13 +137,13 @@ bool is_volume(const std::filesystem::path& file) {
         return begins_as_nifti(file);
     }
     if (extension == ".vtk") {
-        return contains(file, {"structured_points"});
+        return has_word(file, {"structured_points"});
     }
     if (extension == ".json") {
-        return contains(file, {"\"file\"", "\"dims\"", "\"type\""});
+        return has_word(file, {"\"file\"", "\"dims\"", "\"type\""});
     }
     if (extension == ".plist") {
-        return contains(file, {"invesalius"});
+        return has_word(file, {"invesalius"});
     }
     return reader_of(file) != nullptr;
 }

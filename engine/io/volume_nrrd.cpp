@@ -69,7 +69,7 @@ NrrdHeader scan(const Reading& reading) {
     return header;
 }
 
-FileScalar type_of(std::string_view name, const Reading& reading) {
+FileScalar nrrd_type(std::string_view name, const Reading& reading) {
     static const std::map<std::string, FileScalar, std::less<>> types{
         {"signedchar", FileScalar::i8},
         {"int8", FileScalar::i8},
@@ -124,7 +124,7 @@ struct Axes {
     bool is_plain = true;  ///< channels fastest, or none: the voxels lie as a Volume has them
 };
 
-Axes axes_of(const std::vector<double>& sizes, const ItkHeader& itk, const Reading& reading) {
+Axes nrrd_axes(const std::vector<double>& sizes, const ItkHeader& itk, const Reading& reading) {
     const auto channels = static_cast<std::size_t>(itk.components);
     const bool first_is_channels =
         channels > 1 && sizes.size() == itk.dims.size() + 1 && sizes[0] == static_cast<double>(channels);
@@ -257,7 +257,7 @@ Volume read_nrrd(const Reading& reading) {
         static_cast<void>(numbered_files(names, "data file", reading));
     }
     VolumeHead head;
-    head.type = type_of(header.get("type"), reading);
+    head.type = nrrd_type(header.get("type"), reading);
     head.big_endian = lower(header.get("endian")) == "big";
     if (bytes_of(head.type) > 1 && header.get("endian").empty() && lower(header.get("encoding")) == "raw") {
         reading.fail("endian is missing");
@@ -265,7 +265,7 @@ Volume read_nrrd(const Reading& reading) {
     Axes axes;
     try {
         const ItkHeader itk = read_itk_header(ItkFormat::nrrd, reading.file);
-        axes = axes_of(sizes, itk, reading);
+        axes = nrrd_axes(sizes, itk, reading);
         head.volume.grid = itk.grid;
         if (const std::string space = lower(header.get("space"));
             space == "left-anterior-superior" || space == "las") {

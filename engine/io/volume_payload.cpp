@@ -199,7 +199,7 @@ ReadBytes read_slice_by_slice(std::function<std::vector<std::byte>(std::size_t)>
 namespace {
 
 template <class T>
-std::vector<std::byte> encode(std::span<const double> numbers, const Reading& reading) {
+std::vector<std::byte> encode_as(std::span<const double> numbers, const Reading& reading) {
     std::vector<std::byte> bytes(numbers.size() * sizeof(T));
     std::byte* out = bytes.data();
     for (const double number : numbers) {
@@ -224,25 +224,25 @@ std::vector<std::byte> encode(std::span<const double> numbers, const Reading& re
 std::vector<std::byte> encode(std::span<const double> numbers, FileScalar type, const Reading& reading) {
     switch (type) {
         case FileScalar::u8:
-            return encode<std::uint8_t>(numbers, reading);
+            return encode_as<std::uint8_t>(numbers, reading);
         case FileScalar::i8:
-            return encode<std::int8_t>(numbers, reading);
+            return encode_as<std::int8_t>(numbers, reading);
         case FileScalar::u16:
-            return encode<std::uint16_t>(numbers, reading);
+            return encode_as<std::uint16_t>(numbers, reading);
         case FileScalar::i16:
-            return encode<std::int16_t>(numbers, reading);
+            return encode_as<std::int16_t>(numbers, reading);
         case FileScalar::u32:
-            return encode<std::uint32_t>(numbers, reading);
+            return encode_as<std::uint32_t>(numbers, reading);
         case FileScalar::i32:
-            return encode<std::int32_t>(numbers, reading);
+            return encode_as<std::int32_t>(numbers, reading);
         case FileScalar::u64:
-            return encode<std::uint64_t>(numbers, reading);
+            return encode_as<std::uint64_t>(numbers, reading);
         case FileScalar::i64:
-            return encode<std::int64_t>(numbers, reading);
+            return encode_as<std::int64_t>(numbers, reading);
         case FileScalar::f32:
-            return encode<float>(numbers, reading);
+            return encode_as<float>(numbers, reading);
         case FileScalar::f64:
-            return encode<double>(numbers, reading);
+            return encode_as<double>(numbers, reading);
     }
     return {};
 }

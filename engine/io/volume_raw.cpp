@@ -16,7 +16,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-FileScalar type_of(const std::string& name, const Reading& reading) {
+FileScalar sidecar_type(const std::string& name, const Reading& reading) {
     static const std::map<std::string, FileScalar, std::less<>> types{
         {"u8", FileScalar::u8},   {"i8", FileScalar::i8},   {"u16", FileScalar::u16},
         {"i16", FileScalar::i16}, {"u32", FileScalar::u32}, {"i32", FileScalar::i32},
@@ -132,7 +132,7 @@ VolumeHead head_of(const Sidecar& sidecar, const Reading& reading) {
     volume.intercept = sidecar.number("intercept", 0.0);
     volume.unit = sidecar.text("unit", "");
     volume.channels = static_cast<int>(sidecar.whole("channels", 1.0, 4.0, 1.0));
-    head.type = type_of(sidecar.text("type"), reading);
+    head.type = sidecar_type(sidecar.text("type"), reading);
     const std::string order = sidecar.text("byte_order", "little");
     if (order != "little" && order != "big") {
         reading.fail("byte_order: '" + printable(order) + "' is neither 'little' nor 'big'");

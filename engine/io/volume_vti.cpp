@@ -12,7 +12,7 @@ namespace viscera::io {
 
 namespace {
 
-FileScalar type_of(std::string_view name, const Reading& reading) {
+FileScalar vtk_type(std::string_view name, const Reading& reading) {
     static const std::map<std::string_view, FileScalar> types{
         {"UInt8", FileScalar::u8},   {"Int8", FileScalar::i8},    {"UInt16", FileScalar::u16},
         {"Int16", FileScalar::i16},  {"UInt32", FileScalar::u32}, {"Int32", FileScalar::i32},
@@ -85,7 +85,7 @@ pugi::xml_node scalars_of(const pugi::xml_node& piece, const Reading& reading) {
     reading.fail("has no values at points");
 }
 
-Volume read_image(const VtkXml& xml, const Reading& reading) {
+Volume read_image_data(const VtkXml& xml, const Reading& reading) {
     const pugi::xml_node image = xml.root().child("ImageData");
     const pugi::xml_node piece = image.child("Piece");
     if (!piece || piece.next_sibling("Piece")) {
@@ -94,7 +94,7 @@ Volume read_image(const VtkXml& xml, const Reading& reading) {
     VolumeHead head;
     head.volume.grid = grid_of(image, piece, reading);
     const pugi::xml_node array = scalars_of(piece, reading);
-    head.type = type_of(array.attribute("type").value(), reading);
+    head.type = vtk_type(array.attribute("type").value(), reading);
     head.volume.channels = static_cast<int>(whole_number(array.attribute("NumberOfComponents").as_string("1"),
                                                          "NumberOfComponents", 1.0, 4.0, reading));
     const std::uint64_t due = head.bytes(reading);
@@ -120,7 +120,7 @@ Volume read_image(const VtkXml& xml, const Reading& reading) {
 
 Volume read_vti(const Reading& reading) {
     try {
-        return read_image(VtkXml(read_file(reading.file), "ImageData"), reading);
+        return read_image_data(VtkXml(read_file(reading.file), "ImageData"), reading);
     } catch (const Error&) {
         throw;
     } catch (const std::runtime_error& error) {

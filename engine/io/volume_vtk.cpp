@@ -14,7 +14,7 @@ namespace viscera::io {
 namespace {
 
 /// Widths as VTK has them on 64-bit Linux.
-std::optional<FileScalar> type_of(std::string_view name) {
+std::optional<FileScalar> legacy_type(std::string_view name) {
     static const std::map<std::string, FileScalar, std::less<>> types{
         {"unsigned_char", FileScalar::u8}, {"char", FileScalar::i8},
         {"signed_char", FileScalar::i8},   {"unsigned_short", FileScalar::u16},
@@ -35,9 +35,9 @@ struct Array {
 };
 
 /// Walks through the keywords of the header up to the voxels.
-class Header {
+class VtkHeader {
   public:
-    Header(std::string_view text, const Reading& reading) : text_(text), rest_(text), reading_(reading) {
+    VtkHeader(std::string_view text, const Reading& reading) : text_(text), rest_(text), reading_(reading) {
         if (!take_line(rest_).starts_with("# vtk DataFile")) {
             reading_.fail("does not begin with '# vtk DataFile'");
         }
@@ -160,7 +160,7 @@ class Header {
     }
 
     [[nodiscard]] FileScalar known(std::string_view name) const {
-        const std::optional<FileScalar> type = type_of(name);
+        const std::optional<FileScalar> type = legacy_type(name);
         if (!type) {
             reading_.fail("values of type '" + printable(name) + "' are not read");
         }
@@ -190,7 +190,7 @@ class Header {
     double points_ = 0.0;
 };
 
-Volume read_text(const Header& header, std::size_t count, const Reading& reading) {
+Volume read_text(const VtkHeader& header, std::size_t count, const Reading& reading) {
     const std::string text = read_file(reading.file);
     const std::string_view voxels = std::string_view(text).substr(header.offset());
     if (voxels.size() / 2 + 1 < count) {
@@ -218,7 +218,7 @@ Volume read_legacy_vtk(const Reading& reading) {
     constexpr std::size_t most_header = std::size_t{1} << 20U;
     static_cast<void>(size_of(reading.file, reading));
     const std::string start = first_bytes(reading.file, most_header);
-    const Header header(start, reading);
+    const VtkHeader header(start, reading);
     const std::uint64_t due = header.head().bytes(reading);
     if (!header.is_binary()) {
         return read_text(header, due / bytes_of(header.head().type), reading);

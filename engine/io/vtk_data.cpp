@@ -15,7 +15,7 @@ namespace viscera::io {
 namespace {
 
 template <class T>
-T load(const char* bytes, bool big_endian) {
+T load_number(const char* bytes, bool big_endian) {
     std::array<char, sizeof(T)> raw{};
     std::memcpy(raw.data(), bytes, sizeof(T));
     if (big_endian != (std::endian::native == std::endian::big)) {
@@ -31,7 +31,7 @@ std::vector<double> widen(std::string_view bytes, bool big_endian) {
     }
     std::vector<double> values(bytes.size() / sizeof(T));
     for (std::size_t i = 0; i < values.size(); ++i) {
-        values[i] = static_cast<double>(load<T>(bytes.data() + i * sizeof(T), big_endian));
+        values[i] = static_cast<double>(load_number<T>(bytes.data() + i * sizeof(T), big_endian));
     }
     return values;
 }
@@ -70,8 +70,8 @@ class HeaderReader {
             throw std::runtime_error("an array is cut off");
         }
         const std::uint64_t value = encoding_.header_64bit
-                                        ? load<std::uint64_t>(bytes_.data(), encoding_.big_endian)
-                                        : load<std::uint32_t>(bytes_.data(), encoding_.big_endian);
+                                        ? load_number<std::uint64_t>(bytes_.data(), encoding_.big_endian)
+                                        : load_number<std::uint32_t>(bytes_.data(), encoding_.big_endian);
         bytes_.remove_prefix(width);
         return value;
     }

@@ -16,9 +16,9 @@ namespace viscera::io {
 
 namespace {
 
-class Reader {
+class VtpReader {
   public:
-    explicit Reader(std::string text) : xml_(std::move(text), "PolyData") {}
+    explicit VtpReader(std::string text) : xml_(std::move(text), "PolyData") {}
 
     [[nodiscard]] std::vector<VtpPiece> pieces() const {
         std::vector<VtpPiece> pieces;
@@ -113,7 +113,7 @@ class Reader {
 
 std::vector<VtpPiece> read_vtp(const std::filesystem::path& file) {
     try {
-        return Reader(read_file(file)).pieces();
+        return VtpReader(read_file(file)).pieces();
     } catch (const Error&) {
         throw;
     } catch (const std::bad_alloc&) {

@@ -8,7 +8,7 @@ namespace {
 
 /// Whether all corners lie beyond one plane of the view, and with them what is between. The sides are linear
 /// in clip coordinates, so this holds behind the eye, too.
-bool outside(const std::array<glm::dvec4, 8>& corners) {
+bool out_of_sight(const std::array<glm::dvec4, 8>& corners) {
     for (int axis = 0; axis < 3; ++axis) {
         for (const double side : {-1.0, 1.0}) {
             if (std::ranges::all_of(corners, [&](const glm::dvec4& c) { return side * c[axis] > c.w; })) {
@@ -33,7 +33,7 @@ PixelRect project_bounds(const Bounds& bounds, const glm::dmat4& view_projection
                            (i & 4) != 0 ? bounds.max.z : bounds.min.z);
         corners[i] = view_projection * glm::dvec4(p, 1.0);
     }
-    if (outside(corners)) {
+    if (out_of_sight(corners)) {
         return {};
     }
     glm::dvec2 low(1e30);

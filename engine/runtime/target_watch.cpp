@@ -24,7 +24,7 @@ std::uint64_t next_version() {
     return ++last;
 }
 
-std::size_t bytes_of(const PixelRegion& region, PixelFormat format) {
+std::size_t region_bytes(const PixelRegion& region, PixelFormat format) {
     return static_cast<std::size_t>(region.area()) * bytes_per_pixel(format);
 }
 
@@ -178,7 +178,7 @@ void TargetWatch::ask(Entry& entry, Executor& executor, const Executor::Output& 
     request.region = executor.changed(entry.asked_key, output.key).value_or(all);
     entry.requests.reserve(most_requests);
     if (path_ == WatchPath::buffered) {
-        request.buffer.emplace(take_buffer(bytes_of(request.region, entry.shown.image.format)));
+        request.buffer.emplace(take_buffer(region_bytes(request.region, entry.shown.image.format)));
         gl::set_tight_packing(gl_);
         source.bind();
         request.buffer->bind(GL_PIXEL_PACK_BUFFER);
@@ -304,7 +304,7 @@ void TargetWatch::arrive(Entry& entry, Request& request) {
     const std::size_t pixel = bytes_per_pixel(image.format);
     if (request.buffer) {
         request.buffer->bind(GL_COPY_WRITE_BUFFER);
-        const auto bytes = static_cast<GLsizeiptr>(bytes_of(request.region, image.format));
+        const auto bytes = static_cast<GLsizeiptr>(region_bytes(request.region, image.format));
         const auto* mapped = bytes == 0 ? nullptr
                                         : static_cast<const std::byte*>(gl_.MapBufferRange(
                                               GL_COPY_WRITE_BUFFER, 0, bytes, GL_MAP_READ_BIT));

@@ -11,13 +11,13 @@ namespace {
 
 constexpr double degrees_per_height = 180.0;
 
-struct Frame {
+struct CameraAxes {
     glm::dvec3 forward;
     glm::dvec3 right;
     glm::dvec3 up;
 };
 
-Frame frame_of(const CameraParams& camera) {
+CameraAxes camera_axes(const CameraParams& camera) {
     const glm::dvec3 forward = glm::normalize(camera.target_mm - camera.eye_mm);
     const glm::dvec3 right = glm::normalize(glm::cross(forward, camera.up));
     return {forward, right, glm::cross(right, forward)};
@@ -46,9 +46,9 @@ void rotate(CameraParams& camera, double x, double y) {
         camera.secondary_deg = std::clamp(camera.secondary_deg - y * degrees_per_height, -89.0, 89.0);
         return;
     }
-    const Frame frame = frame_of(camera);
+    const CameraAxes axes = camera_axes(camera);
     const glm::dmat4 yaw = glm::rotate(glm::dmat4(1.0), glm::radians(-x * degrees_per_height), camera.up);
-    const glm::dmat4 turn = glm::rotate(yaw, glm::radians(y * degrees_per_height), frame.right);
+    const glm::dmat4 turn = glm::rotate(yaw, glm::radians(y * degrees_per_height), axes.right);
     const glm::dvec3 arm(turn * glm::dvec4(camera.eye_mm - camera.target_mm, 0.0));
     // Short of the poles, where up is along the view.
     if (std::abs(glm::dot(glm::normalize(arm), glm::normalize(camera.up))) < 0.999) {
@@ -65,8 +65,8 @@ void pan(CameraParams& camera, double x, double y) {
         camera.isocentre_mm -= height * glm::dvec3(sideways * to_world[0] + y * to_world[1]);
         return;
     }
-    const Frame frame = frame_of(camera);
-    const glm::dvec3 move = height * (x * frame.right + y * frame.up);
+    const CameraAxes axes = camera_axes(camera);
+    const glm::dvec3 move = height * (x * axes.right + y * axes.up);
     camera.eye_mm -= move;
     camera.target_mm -= move;
 }

@@ -19,16 +19,16 @@
 namespace viscera::assets {
 namespace {
 
-constexpr double pi = std::numbers::pi;
-constexpr int coarser = 2;
+using std::numbers::pi;
+constexpr int coarser_scan = 2;
 
 const Volume& artery() {
-    static const Volume made = make_artery(default_seed, coarser);
+    static const Volume made = make_artery(default_seed, coarser_scan);
     return made;
 }
 
 const Volume& fetus() {
-    static const Volume made = make_fetus(default_seed, coarser);
+    static const Volume made = make_fetus(default_seed, coarser_scan);
     return made;
 }
 

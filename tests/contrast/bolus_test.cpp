@@ -9,11 +9,10 @@
 
 #include "effects/contrast/density.h"
 #include "engine/core/error.h"
+#include "tests/core/not_finite.h"
 
 namespace viscera::contrast {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 // The GLSL of bolus.h, operation by operation.
 float density_as_shader(const Bolus::Uniforms& u, float x) {

@@ -1,7 +1,6 @@
 #include "effects/contrast/flow_network.h"
 
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <random>
 
@@ -9,12 +8,12 @@
 #include <Eigen/Dense>
 
 #include "engine/core/error.h"
+#include "tests/core/not_finite.h"
 
 namespace viscera::contrast {
 namespace {
 
-constexpr double pi = std::numbers::pi;
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+using std::numbers::pi;
 constexpr double pascal_per_mmhg = 133.322387415;
 
 // Inflow minus outflow of a node.

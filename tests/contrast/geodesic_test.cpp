@@ -14,7 +14,7 @@
 namespace viscera::contrast {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 struct Surface {
     std::vector<glm::vec3> positions;

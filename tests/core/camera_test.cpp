@@ -10,12 +10,12 @@
 
 #include "engine/core/error.h"
 #include "engine/core/eyes.h"
+#include "tests/core/not_finite.h"
 
 namespace viscera {
 namespace {
 
 constexpr double tolerance = 1e-12;
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 CameraParams c_arm(double primary_deg, double secondary_deg) {
     CameraParams camera;
@@ -202,12 +202,12 @@ TEST(Camera, PointsThatHaveNoPictureGiveNone) {
     EXPECT_GT(outside->x, 1.0);
 }
 
-struct Broken {
+struct BrokenCamera {
     const char* what;
     void (*spoil)(CameraParams&);
 };
 
-class CameraErrors : public testing::TestWithParam<Broken> {};
+class CameraErrors : public testing::TestWithParam<BrokenCamera> {};
 
 TEST_P(CameraErrors, AreTyped) {
     CameraParams camera;
@@ -223,7 +223,7 @@ TEST_P(CameraErrors, AreTyped) {
     }
 }
 
-const Broken broken[] = {
+const BrokenCamera broken_cameras[] = {
     {"same point", [](CameraParams& c) { c.eye_mm = c.target_mm; }},
     {"zero vector", [](CameraParams& c) { c.up = glm::dvec3(0.0); }},
     {"along the view",
@@ -267,7 +267,7 @@ const Broken broken[] = {
          c.primary_deg = nan;
      }},
 };
-INSTANTIATE_TEST_SUITE_P(Each, CameraErrors, testing::ValuesIn(broken));
+INSTANTIATE_TEST_SUITE_P(Each, CameraErrors, testing::ValuesIn(broken_cameras));
 
 TEST(Camera, BadAspectAndTimeAreErrors) {
     for (const double aspect : {0.0, -1.0, nan, std::numeric_limits<double>::infinity()}) {

@@ -10,7 +10,7 @@ namespace {
 
 const std::filesystem::path root = VISCERA_SOURCE_DIR;
 
-std::string read(const std::filesystem::path& file) {
+std::string text_of(const std::filesystem::path& file) {
     std::ifstream stream(file);
     std::ostringstream text;
     text << stream.rdbuf();
@@ -24,7 +24,7 @@ TEST(Docs, code_blocks_stand_in_the_files_that_they_name) {
         if (entry.path().extension() != ".md") {
             continue;
         }
-        std::istringstream lines(read(entry.path()));
+        std::istringstream lines(text_of(entry.path()));
         bool inside = false;
         std::string file;
         std::string block;
@@ -32,7 +32,7 @@ TEST(Docs, code_blocks_stand_in_the_files_that_they_name) {
             if (line.starts_with("```")) {
                 if (inside && !file.empty()) {
                     ++checked;
-                    EXPECT_NE(read(root / file).find(block), std::string::npos)
+                    EXPECT_NE(text_of(root / file).find(block), std::string::npos)
                         << entry.path() << ": not in " << file << ":\n"
                         << block;
                 }
@@ -66,7 +66,7 @@ TEST(Docs, links_lead_somewhere) {
         }
     }
     for (const std::filesystem::path& page : pages) {
-        const std::string text = read(page);
+        const std::string text = text_of(page);
         for (std::size_t at = text.find("]("); at != std::string::npos; at = text.find("](", at + 2)) {
             const std::string link = text.substr(at + 2, text.find(')', at) - at - 2);
             if (!link.starts_with("http") && !link.starts_with("#")) {

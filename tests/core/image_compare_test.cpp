@@ -8,14 +8,13 @@
 #include <random>
 
 #include "engine/core/error.h"
+#include "tests/core/not_finite.h"
 
 namespace viscera {
 namespace {
 
 using testing::HasSubstr;
 
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-constexpr float infinity = std::numeric_limits<float>::infinity();
 constexpr CompareLimits generous{1e30, 1e30, 1.0};
 
 Image filled(int width, int height, PixelFormat format, float value) {
@@ -138,7 +137,7 @@ TEST(Compare, LargeValuesDoNotOverflow) {
 }
 
 TEST(Compare, NanAndInfNeverPass) {
-    for (const float bad : {nan, -nan, infinity, -infinity}) {
+    for (const float bad : {nan_float, -nan_float, infinity_float, -infinity_float}) {
         for (const PixelFormat format : {PixelFormat::r32f, PixelFormat::rgba16f, PixelFormat::depth32f}) {
             const Image good = filled(3, 3, format, 0.5F);
             Image spoilt = good;
@@ -153,7 +152,7 @@ TEST(Compare, NanAndInfNeverPass) {
             EXPECT_TRUE(std::isfinite(result.mean));
         }
     }
-    const Image all = filled(2, 2, PixelFormat::r32f, nan);
+    const Image all = filled(2, 2, PixelFormat::r32f, nan_float);
     EXPECT_FALSE(compare(all, all, generous).equal);
 }
 
@@ -222,7 +221,7 @@ TEST(Heatmap, RunsFromBlackThroughRedAndYellowToWhite) {
     b.set(2, 0, 3, -2.0F);
     b.set(3, 0, 0, 3.0F);
     b.set(4, 0, 0, 1e-9F);
-    b.set(5, 0, 0, nan);
+    b.set(5, 0, 0, nan_float);
     b.set(0, 1, 1, 6.0F);
     const Image map = heatmap(a, b, 3.0);
     EXPECT_EQ(map.format, PixelFormat::rgba8);

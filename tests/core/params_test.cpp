@@ -85,8 +85,8 @@ template <class T>
 
 /// Faults as "pointer: message".
 template <class T>
-[[nodiscard]] std::vector<std::string> read(const json& object, T& params, const std::string& base = "",
-                                            const std::string& pointer = "/p") {
+[[nodiscard]] std::vector<std::string> read_into(const json& object, T& params, const std::string& base = "",
+                                                 const std::string& pointer = "/p") {
     std::vector<JsonFault> faults;
     read_params(object, pointer, base, visiting(params), faults);
     std::vector<std::string> texts;
@@ -98,23 +98,23 @@ template <class T>
 
 [[nodiscard]] std::vector<std::string> faults_of(const char* text) {
     Params params;
-    return read(json::parse(text), params);
+    return read_into(json::parse(text), params);
 }
 
 TEST(ReadParams, KeepsDefaultsOfAnEmptyObject) {
     Params params;
-    EXPECT_THAT(read(json::object(), params), IsEmpty());
+    EXPECT_THAT(read_into(json::object(), params), IsEmpty());
     EXPECT_EQ(params, Params{});
 }
 
 TEST(ReadParams, FillsEveryKindOfField) {
     Params params;
-    EXPECT_THAT(read(json::parse(R"({
+    EXPECT_THAT(read_into(json::parse(R"({
         "enabled": false, "steps": 8.0, "gain": 1, "label": "ü", "mode": "painter", "mesh": "../m/a.glb",
         "colour": [0, 0.5, 1], "rect": [1, 2, 3, 4], "spot": {"radius_mm": 9}, "spots": [{}, {"at_mm": [5, 6]}],
         "times_s": [], "modes": ["max", "depth"], "grid": [[1], [], [2, 3]], "extra": {"radius_mm": 2},
         "limit": null, "comment": {"any": "thing"}})"),
-                     params, "scenes/x"),
+                          params, "scenes/x"),
                 IsEmpty());
     Params expected;
     expected.enabled = false;
@@ -144,21 +144,21 @@ TEST(ReadParams, WritingAndReadingBackGivesTheSame) {
     params.mesh = {"a/b.glb"};
     params.gain = 0.1;
     Params back;
-    EXPECT_THAT(read(json::parse(write_params(visiting(params)).dump()), back), IsEmpty());
+    EXPECT_THAT(read_into(json::parse(write_params(visiting(params)).dump()), back), IsEmpty());
     EXPECT_EQ(back, params);
 }
 
 TEST(ReadParams, ListElementsStartFromTheirTypesDefault) {
     Params params;
     params.spots = {Spot{{8.0, 8.0}, 8.0}};
-    EXPECT_THAT(read(json::parse(R"({"spots": [{}]})"), params), IsEmpty());
+    EXPECT_THAT(read_into(json::parse(R"({"spots": [{}]})"), params), IsEmpty());
     EXPECT_EQ(params.spots, std::vector<Spot>{Spot{}});
 }
 
 TEST(ReadParams, AbsentOptionalStaysAndGroupsMerge) {
     Params params;
     params.spot.at_mm = {7.0, 7.0};
-    EXPECT_THAT(read(json::parse(R"({"spot": {"radius_mm": 1}})"), params), IsEmpty());
+    EXPECT_THAT(read_into(json::parse(R"({"spot": {"radius_mm": 1}})"), params), IsEmpty());
     EXPECT_EQ(params.spot, (Spot{{7.0, 7.0}, 1.0}));
     EXPECT_EQ(params.limit, 7.0);
     EXPECT_FALSE(params.extra.has_value());
@@ -212,7 +212,7 @@ TEST(ReadParams, RefusesNumbersThatAreNotFinite) {
     for (const double value :
          {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
         Params params;
-        EXPECT_THAT(read(json{{"rect", {0.0, value, 0.0, 0.0}}}, params),
+        EXPECT_THAT(read_into(json{{"rect", {0.0, value, 0.0, 0.0}}}, params),
                     ElementsAre("/p/rect/1: the number is not finite"));
         EXPECT_EQ(params, Params{});
     }
@@ -239,10 +239,10 @@ TEST(ReadParams, NamesUnknownWords) {
 TEST(ReadParams, FieldsAtFaultKeepTheirValue) {
     Params params;
     EXPECT_THAT(
-        read(json::parse(R"({"enabled": 0, "steps": 99, "gain": "x", "label": 1, "mode": "no", "mesh": 1,
+        read_into(json::parse(R"({"enabled": 0, "steps": 99, "gain": "x", "label": 1, "mode": "no", "mesh": 1,
         "colour": [0, 0, 5], "rect": [], "spot": 1, "spots": 1, "times_s": "x", "modes": {}, "grid": 0,
         "extra": {"radius_mm": -1}, "limit": "x"})"),
-             params),
+                  params),
         testing::SizeIs(15));
     EXPECT_EQ(params, Params{});
 }
@@ -259,8 +259,8 @@ TEST(ReadParams, WantsRequiredKeys) {
         }
     };
     Holder holder;
-    EXPECT_THAT(read(json::object(), holder), ElementsAre("/p/need/id: missing", "/p/list: missing"));
-    EXPECT_THAT(read(json::parse(R"({"need": 1, "list": [{}], "maybe": {}})"), holder),
+    EXPECT_THAT(read_into(json::object(), holder), ElementsAre("/p/need/id: missing", "/p/list: missing"));
+    EXPECT_THAT(read_into(json::parse(R"({"need": 1, "list": [{}], "maybe": {}})"), holder),
                 ElementsAre("/p/need: expected an object, not a number", "/p/list/0/id: missing",
                             "/p/maybe/id: missing"));
     struct Strict {
@@ -268,13 +268,13 @@ TEST(ReadParams, WantsRequiredKeys) {
         void visit(ParamVisitor& v) { v.field({.name = "need", .doc = "", .required = true}, need); }
     };
     Strict strict;
-    EXPECT_THAT(read(json::object(), strict), ElementsAre("/p/need: missing"));
+    EXPECT_THAT(read_into(json::object(), strict), ElementsAre("/p/need: missing"));
 }
 
 TEST(ReadParams, ResolvesPathsWithoutLookingAtThem) {
     const auto resolved = [](const char* path, const char* base) {
         Params params;
-        EXPECT_THAT(read(json{{"mesh", path}}, params, base), IsEmpty());
+        EXPECT_THAT(read_into(json{{"mesh", path}}, params, base), IsEmpty());
         return params.mesh.path.generic_string();
     };
     EXPECT_EQ(resolved("a.glb", "assets/scenes"), "assets/scenes/a.glb");

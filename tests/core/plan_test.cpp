@@ -9,6 +9,7 @@
 
 #include "engine/core/error.h"
 #include "tests/core/graph_builder.h"
+#include "tests/core/not_finite.h"
 #include "tests/core/random_graph.h"
 
 namespace viscera {
@@ -30,7 +31,7 @@ void expect_only_fault(const Graph& graph, const std::string& text) {
 }
 
 /// base -> blur -> out
-Graph chain() {
+Graph two_steps() {
     Graph graph;
     graph.targets = {target("base"), target("blur"), target("out")};
     graph.passes = {pass("draw", {write("base")}), pass("blur", {read("base"), write("blur")}),
@@ -44,7 +45,7 @@ const PlanContent& content_of(const Plan& plan, std::size_t pass, std::size_t po
 }
 
 TEST(Compile, ChainBindsCullsAndShares) {
-    Graph graph = chain();
+    Graph graph = two_steps();
     graph.targets.push_back(target("unused"));
     graph.passes.push_back(pass("aside", {read("base"), write("unused")}));
     const Plan plan = compile_or_throw(graph, 64, 48);
@@ -62,7 +63,7 @@ TEST(Compile, ChainBindsCullsAndShares) {
 }
 
 TEST(Compile, ReadMeansTheNearestWriteAbove) {
-    Graph graph = chain();
+    Graph graph = two_steps();
     graph.passes.insert(graph.passes.begin() + 1, pass("again", {write("base")}));
     const Plan plan = compile_or_throw(graph, 64, 48);
     EXPECT_EQ(content_of(plan, 2, 0).writer, 1U);
@@ -70,7 +71,7 @@ TEST(Compile, ReadMeansTheNearestWriteAbove) {
 }
 
 TEST(Compile, DisabledPassIsAsIfNotThere) {
-    Graph graph = chain();
+    Graph graph = two_steps();
     graph.passes.insert(graph.passes.begin() + 1, pass("again", {write("base")}));
     graph.passes[1].enabled = false;
     const Plan plan = compile_or_throw(graph, 64, 48);
@@ -84,7 +85,7 @@ TEST(Compile, DisabledPassIsAsIfNotThere) {
 }
 
 TEST(Compile, PingPongReadsOneTextureAndWritesAnother) {
-    Graph graph = chain();
+    Graph graph = two_steps();
     graph.passes.insert(graph.passes.begin() + 1, pass("step", {write("base"), read("base")}));
     const Plan plan = compile_or_throw(graph, 64, 48);
     EXPECT_EQ(content_of(plan, 1, 1).writer, 0U);
@@ -93,7 +94,7 @@ TEST(Compile, PingPongReadsOneTextureAndWritesAnother) {
 }
 
 TEST(Compile, ModifyContinuesInTheSameTexture) {
-    Graph graph = chain();
+    Graph graph = two_steps();
     graph.passes.insert(graph.passes.begin() + 1, pass("blend", {modify("base")}));
     const Plan plan = compile_or_throw(graph, 64, 48);
     const PlanContent& blended = content_of(plan, 1, 0);
@@ -105,7 +106,7 @@ TEST(Compile, ModifyContinuesInTheSameTexture) {
 }
 
 TEST(Compile, UnreadWriteOfALivePassHasNoAttachmentButDepthHas) {
-    Graph graph = chain();
+    Graph graph = two_steps();
     graph.targets.push_back(target("spare"));
     graph.targets.push_back(target("depth", PixelFormat::depth32f));
     graph.passes[0].ports.push_back(write("spare"));
@@ -142,7 +143,7 @@ TEST(Compile, HistoryKeepsTheLastWriterAliveInTexturesOfItsOwn) {
 }
 
 TEST(Compile, PassthroughKeepsItsSourceAsLongAsTheResult) {
-    Graph graph = chain();
+    Graph graph = two_steps();
     graph.targets.push_back(target("late"));
     graph.passes[1].ports[1].passthrough = "base";
     graph.passes.insert(graph.passes.begin() + 2, pass("other", {write("late")}));
@@ -156,7 +157,7 @@ TEST(Compile, PassthroughKeepsItsSourceAsLongAsTheResult) {
 }
 
 TEST(Compile, OptionalReadsOfNothingAreEmpty) {
-    Graph graph = chain();
+    Graph graph = two_steps();
     graph.passes[2].ports.push_back(read_if_any("nothing"));
     GraphPort last = previous("never");
     last.optional = true;
@@ -168,7 +169,7 @@ TEST(Compile, OptionalReadsOfNothingAreEmpty) {
 }
 
 TEST(Compile, ImportedTargetsHaveTheHostsTexture) {
-    Graph graph = chain();
+    Graph graph = two_steps();
     graph.imported = {{"host.colour", PixelFormat::rgba8, 320, 200, true}};
     graph.passes[0].ports.push_back(read("host.colour"));
     graph.passes.push_back(pass("present", {read("out"), write("host.colour")}));
@@ -182,7 +183,7 @@ TEST(Compile, ImportedTargetsHaveTheHostsTexture) {
 }
 
 TEST(Compile, SizesFollowTheFrameOrAreAbsolute) {
-    Graph graph = chain();
+    Graph graph = two_steps();
     graph.targets[0].size = {0.5, 0, 0};
     graph.targets[1].size = {1.0, 7, 9};
     graph.targets[2].size = {0.001, 0, 0};
@@ -203,7 +204,7 @@ struct Broken {
 class CompileFaults : public testing::TestWithParam<Broken> {};
 
 TEST(Compile, OptionalWritesThatNobodyWantsMayHaveAnySize) {
-    Graph graph = chain();
+    Graph graph = two_steps();
     graph.targets.push_back({.name = "rest", .size = {.scale = 0.5}});
     graph.passes[1].ports.push_back(
         {.port = "blur.rest", .target = "rest", .access = Access::write, .optional = true});
@@ -215,7 +216,7 @@ TEST(Compile, OptionalWritesThatNobodyWantsMayHaveAnySize) {
 }
 
 TEST(Compile, ADepthThatServesItsOwnPassAloneHasThePassesSize) {
-    Graph graph = chain();
+    Graph graph = two_steps();
     graph.targets.push_back({.name = "depth", .format = PixelFormat::depth32f, .size = {.scale = 0.5}});
     graph.passes[1].ports.push_back(
         {.port = "blur.depth", .target = "depth", .access = Access::write, .optional = true});
@@ -226,13 +227,11 @@ TEST(Compile, ADepthThatServesItsOwnPassAloneHasThePassesSize) {
 }
 
 TEST_P(CompileFaults, AreNamedAndAlone) {
-    Graph graph = chain();
+    Graph graph = two_steps();
     ASSERT_TRUE(fault_texts(graph).empty());
     GetParam().spoil(graph);
     expect_only_fault(graph, GetParam().text);
 }
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 const Broken broken[] = {
     {"pass 'show', port 'lost', target 'lost': no pass writes it",
@@ -363,7 +362,7 @@ const Broken broken[] = {
 INSTANTIATE_TEST_SUITE_P(Each, CompileFaults, testing::ValuesIn(broken));
 
 TEST(Compile, ReportsEveryFaultAtOnceInTheOrderOfThePasses) {
-    Graph graph = chain();
+    Graph graph = two_steps();
     graph.targets.push_back(target("Bad"));
     graph.passes[2].ports.push_back(read("x"));
     graph.passes[0].ports.push_back(read("y"));

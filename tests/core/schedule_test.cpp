@@ -127,7 +127,10 @@ class ScheduleOfChain : public testing::Test {
     Schedule schedule;
 };
 
-using enum PassStatus;
+using PassStatus::cached;
+using PassStatus::culled;
+using PassStatus::idle;
+using PassStatus::run;
 
 TEST_F(ScheduleOfChain, FirstFrameRunsAllSecondNone) {
     frame();
@@ -224,7 +227,7 @@ TEST_F(ScheduleOfChain, RegionIsReportedAsReduced) {
     work[0].region = true;
     work[0].reason = "3 of 40 bricks";
     frame();
-    EXPECT_EQ(statuses(), (std::vector{reduced, run, run}));
+    EXPECT_EQ(statuses(), (std::vector{PassStatus::reduced, run, run}));
     EXPECT_EQ(schedule.passes()[0].reason, "3 of 40 bricks");
     frame();
     EXPECT_EQ(statuses(), (std::vector{cached, cached, cached}));
@@ -310,7 +313,7 @@ TEST(Schedule, StatusWords) {
     EXPECT_EQ(to_string(culled), "culled");
     EXPECT_EQ(to_string(idle), "idle");
     EXPECT_EQ(to_string(cached), "cached");
-    EXPECT_EQ(to_string(reduced), "reduced");
+    EXPECT_EQ(to_string(PassStatus::reduced), "reduced");
     EXPECT_EQ(to_string(run), "run");
 }
 

@@ -10,7 +10,8 @@ namespace viscera {
 namespace {
 
 using namespace test;
-using enum PassStatus;
+using PassStatus::cached;
+using PassStatus::idle;
 
 /// A state that two passes update one after the other, and what is shown of it.
 class ScheduleOfUpdates : public testing::Test {
@@ -58,7 +59,7 @@ TEST_F(ScheduleOfUpdates, OnlyWhatChangedSinceIsCopied) {
     work[1] = touches({0});
     frame();
     frame();  // by now each texture has held some state
-    EXPECT_EQ(schedule.passes()[1].status, reduced);
+    EXPECT_EQ(schedule.passes()[1].status, PassStatus::reduced);
     EXPECT_EQ(schedule.passes()[1].reason, "only the touched region");
     for (int i = 0; i < 3; ++i) {
         EXPECT_EQ(frame(), 0U) << "the same region again is drawn anew in any case";

@@ -9,12 +9,10 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/params_json.h"
+#include "tests/core/not_finite.h"
 
 namespace viscera {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 TransferFunction function_of(std::vector<TransferPoint> points) {
     TransferFunction function;

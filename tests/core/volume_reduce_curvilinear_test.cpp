@@ -10,7 +10,7 @@
 namespace viscera::test {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 VolumeShape ring() {
     return {.kind = VolumeKind::cylindrical,

@@ -13,7 +13,7 @@
 namespace viscera {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 VolumeShape cylinder() {
     return {.kind = VolumeKind::cylindrical,

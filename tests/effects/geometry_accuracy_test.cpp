@@ -16,10 +16,10 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int side = 128;
-constexpr double place_known = side / 8388608.0;  // [pixels]: 2^-23 of the side
-constexpr std::size_t most_edge_on = 8;           // measured are up to 5
-constexpr std::size_t most_left_out = 2;          // of 16,384 pixels: measured are none
+constexpr int geometry_side = 128;
+constexpr double place_known = geometry_side / 8388608.0;  // [pixels]: 2^-23 of the side
+constexpr std::size_t most_edge_on = 8;                    // measured are up to 5
+constexpr std::size_t most_left_out = 2;                   // of 16,384 pixels: measured are none
 
 class GeometryAccuracy : public testing::TestWithParam<bool> {
   protected:
@@ -32,8 +32,8 @@ class GeometryAccuracy : public testing::TestWithParam<bool> {
             passes[1]["effect"] = "contrast.main";
             passes[0]["parameters"].erase("method");
         }
-        json made =
-            scene_of(camera, passes, {"contrast.main", "contrast.cloud", "contrast.distance"}, side, side);
+        json made = scene_of(camera, passes, {"contrast.main", "contrast.cloud", "contrast.distance"},
+                             geometry_side, geometry_side);
         if (floats()) {
             use_floats(made, {"contrast.main", "contrast.cloud", "contrast.distance"});
         }
@@ -43,7 +43,7 @@ class GeometryAccuracy : public testing::TestWithParam<bool> {
     void load(const json& parameters, const json& camera = tube_camera()) {
         stage_.load(scene(parameters, camera));
         const Frame frame = stage_.renderer().still(0.0);
-        picture_ = std::make_unique<VesselPicture>(parameters, frame.eye(), side, side);
+        picture_ = std::make_unique<VesselPicture>(parameters, frame.eye(), geometry_side, geometry_side);
         const contrast::BolusParams& bolus = picture_->parameters().bolus;
         // Some time in the injection, when the distance map is drawn: the outline is the same at all times.
         coverage_ = stage_.shot("contrast.distance", bolus.start_s + 0.5);
@@ -73,8 +73,8 @@ class GeometryAccuracy : public testing::TestWithParam<bool> {
         picture_->shift(glm::dvec2(0.0));
         reference::Buffer nearest = wanted;
         std::size_t steep = 0;
-        for (int y = 0; y < side; ++y) {
-            for (int x = 0; x < side; ++x) {
+        for (int y = 0; y < geometry_side; ++y) {
+            for (int x = 0; x < geometry_side; ++x) {
                 const auto got = static_cast<double>(image.at(x, y, channel));
                 const double want = wanted.at(x, y, channel);
                 if (floats() && std::abs(got - want) > float_bound && agreed(x, y)) {
@@ -226,7 +226,7 @@ TEST_P(GeometryAccuracy, Silhouette) {
     load(tube_parameters());
     json scene = scene_of(
         tube_camera(), json::array({pass("mask", "contrast.silhouette", {{"mesh", "../meshes/tube.glb"}})}),
-        {"contrast.mask"}, side, side);
+        {"contrast.mask"}, geometry_side, geometry_side);
     if (floats()) {
         use_floats(scene, {"contrast.mask"});
     }
@@ -235,7 +235,7 @@ TEST_P(GeometryAccuracy, Silhouette) {
     stage_.render(0.0);
     const reference::Buffer map = picture_->distance();
     expect("silhouette", "contrast.mask", [&] {
-        reference::Buffer mask(side, side);
+        reference::Buffer mask(geometry_side, geometry_side);
         std::ranges::transform(map.data, mask.data.begin(), [](double q) { return q < 0.0 ? 0.0 : 1.0; });
         return mask;
     });

@@ -15,13 +15,13 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int side = 128;
+constexpr int overlap_side = 128;
 constexpr double filling_s = 0.6;
 
 json main_scene(json parameters, const std::string& method, bool floats) {
     parameters["method"] = method;
     json scene = scene_of(tube_camera(), json::array({pass("main", "contrast.main", std::move(parameters))}),
-                          {"contrast.main"}, side, side);
+                          {"contrast.main"}, overlap_side, overlap_side);
     if (floats) {
         use_floats(scene, {"contrast.main"});
     }
@@ -79,7 +79,8 @@ TEST(Overlap, PainterGivesTheMaximumBitForBitWhereTrianglesAreOfOneDensity) {
     const TempFolder folder;
     Stage stage;
     stage.load(main_scene(tube_parameters(), "max", false));
-    const VesselPicture tube(tube_parameters(), stage.renderer().still(0.0).eye(), side, side);
+    const VesselPicture tube(tube_parameters(), stage.renderer().still(0.0).eye(), overlap_side,
+                             overlap_side);
     ASSERT_NE(tube.vessel().mesh.triangle_count() % 1013, 0U);
     json parameters;
     parameters["vessel"] = {{"mesh", write_loose_triangles(folder, tube.vessel().mesh).string()},
@@ -99,7 +100,8 @@ TEST(Overlap, PainterStaysWithinTheRangeOfDensityOverATriangle) {
     Stage stage;
     const Image max = main_by(stage, tube_parameters(), "max", true);
     const Image painter = main_by(stage, tube_parameters(), "painter", true);
-    const VesselPicture tube(tube_parameters(), stage.renderer().still(0.0).eye(), side, side);
+    const VesselPicture tube(tube_parameters(), stage.renderer().still(0.0).eye(), overlap_side,
+                             overlap_side);
     const MeshData& mesh = tube.vessel().mesh;
     const contrast::BolusParams& bolus = tube.parameters().bolus;
     const auto density = [&](std::size_t corner) {
@@ -113,8 +115,8 @@ TEST(Overlap, PainterStaysWithinTheRangeOfDensityOverATriangle) {
     }
     ASSERT_LT(range, 0.3);  // else the bound would say nothing
     double below = 0.0;
-    for (int y = 0; y < side; ++y) {
-        for (int x = 0; x < side; ++x) {
+    for (int y = 0; y < overlap_side; ++y) {
+        for (int x = 0; x < overlap_side; ++x) {
             const double excess =
                 static_cast<double>(max.at(x, y, 0)) - static_cast<double>(painter.at(x, y, 0));
             ASSERT_GE(excess, 0.0) << x << ' ' << y;
@@ -132,12 +134,12 @@ TEST(FusedGeometry, EqualsThreePassesBitForBit) {
             const json outputs{"contrast.main", "contrast.cloud", "contrast.distance"};
             const json parameters = tube_parameters();
             json fused = scene_of(tube_camera(), json::array({pass("all", "contrast.geometry", parameters)}),
-                                  outputs, side, side);
+                                  outputs, overlap_side, overlap_side);
             json separate = scene_of(
                 tube_camera(),
                 {pass("main", "contrast.main", parameters), pass("cloud", "contrast.cloud", parameters),
                  pass("distance", "contrast.distance", parameters)},
-                outputs, side, side);
+                outputs, overlap_side, overlap_side);
             std::vector<Image> images;
             for (json* scene : {&fused, &separate}) {
                 if (floats) {
@@ -163,7 +165,7 @@ TEST(Backends, GiveOnePicture) {
     for (const Backend backend : {Backend::osmesa, Backend::egl_surfaceless}) {
         Stage stage(backend);
         Scene scene = load_scene(file);
-        scene.width = scene.height = side;
+        scene.width = scene.height = overlap_side;
         stage.renderer().set_scene(std::move(scene));
         std::map<std::string, Image> targets;
         stage.renderer().set_dump({DumpRequest::Kind::all, {}}, [&](CapturedFrame&& frame) {

@@ -10,7 +10,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int side = 96;
+constexpr int skip_side = 96;
 
 json smoke_parameters() {
     return {{"emitters", json::array({{{"base_mm", {0, 0, -20}},
@@ -28,7 +28,7 @@ json chain(const json& parameters = tube_parameters(), const json& smoke = smoke
         {pass("background", "picture.image", {{"file", "../images/thorax.exr"}}),
          pass("vessels", "contrast.geometry", parameters), pass("summarize", "contrast.summarize"),
          pass("reflux", "contrast.reflux", smoke), pass("composite", "contrast.composite")},
-        {"final"}, side, side);
+        {"final"}, skip_side, skip_side);
 }
 
 json& pass_in(json& scene, const std::string& name) {
@@ -263,8 +263,8 @@ TEST_F(Skip, OnlyThePartThatTheVesselCanCoverIsDrawn) {
     // That nothing is cut off, the references prove, which know no region: geometry_accuracy_test.cpp.
     const Image main = picture("contrast.main");
     int lit = 0;
-    for (int y = 0; y < side; ++y) {
-        for (int x = 0; x < side; ++x) {
+    for (int y = 0; y < skip_side; ++y) {
+        for (int x = 0; x < skip_side; ++x) {
             lit += main.at(x, y, 0) > 0.0F ? 1 : 0;
         }
     }
@@ -380,7 +380,7 @@ TEST_F(Skip, AResizeRedrawsAll) {
     for (const PassReport& pass : report_.passes) {
         EXPECT_TRUE(draws(pass.name)) << pass.name;
     }
-    scene["resolution"] = {120, side};
+    scene["resolution"] = {120, skip_side};
     EXPECT_EQ(picture().width, 120);
     expect_cold(scene, 0.7);
     report_ = stage_.renderer().render(frame);

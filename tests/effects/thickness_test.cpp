@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int side = 96;
+constexpr int thickness_side = 96;
 constexpr double height_mm = 24.0;
 constexpr double radius_mm = 4.0;
 constexpr double calibre_mm = 10.0;
@@ -87,7 +87,7 @@ class Thickness : public testing::Test {
             {"bolus", {{"rise_s", 0.1}, {"duration_s", 100}}},
             {"method", "thickness"}};
         json scene = scene_of(camera, json::array({pass("main", "contrast.main", parameters)}),
-                              {"contrast.main"}, side, side);
+                              {"contrast.main"}, thickness_side, thickness_side);
         use_floats(scene, {"contrast.main"});
         stage_.load(scene);
         Image image = stage_.shot("contrast.main", 50.0);
@@ -96,7 +96,9 @@ class Thickness : public testing::Test {
     }
 
     /// Distance [mm] of a pixel from the middle, to the right or upwards.
-    static double off_mm(int pixel) { return (pixel + 0.5 - side / 2) * height_mm / side; }
+    static double off_mm(int pixel) {
+        return (pixel + 0.5 - thickness_side / 2) * height_mm / thickness_side;
+    }
     static double chord(double off) {
         return 2.0 * std::sqrt(std::max(0.0, radius_mm * radius_mm - off * off));
     }
@@ -116,8 +118,8 @@ TEST_F(Thickness, IsTheChordOfACylinderAtAnySlant) {
     for (const double tilt_deg : {0.0, 35.0, -60.0}) {
         const Image image = picture(tilt_deg);
         const double slant = std::cos(tilt_deg * std::numbers::pi / 180.0);
-        for (int y = side / 4; y < side; y += side / 4) {
-            for (int x = 0; x < side; ++x) {
+        for (int y = thickness_side / 4; y < thickness_side; y += thickness_side / 4) {
+            for (int x = 0; x < thickness_side; ++x) {
                 const double off = off_mm(x);
                 // The polygon lies within the circle by 3e-4 of the radius, which shows most at the outline.
                 const double bound = std::abs(off) < 0.95 * radius_mm ? 0.005 : 0.06;
@@ -132,8 +134,8 @@ TEST_F(Thickness, AddsUpWhereVesselsCross) {
     add_cylinder(0.0);
     add_cylinder(90.0);
     const Image image = picture();
-    for (int y = 2; y < side; y += 7) {
-        for (int x = 3; x < side; x += 7) {
+    for (int y = 2; y < thickness_side; y += 7) {
+        for (int x = 3; x < thickness_side; x += 7) {
             const double u = off_mm(x);
             const double v = off_mm(y);
             if (std::max(std::abs(u), std::abs(v)) < 0.95 * radius_mm) {
@@ -141,7 +143,8 @@ TEST_F(Thickness, AddsUpWhereVesselsCross) {
             }
         }
     }
-    EXPECT_GT(image.at(side / 2, side / 2, 0), 1.5F) << "more than the density of one vessel";
+    EXPECT_GT(image.at(thickness_side / 2, thickness_side / 2, 0), 1.5F)
+        << "more than the density of one vessel";
 }
 
 TEST_F(Thickness, DoesNotLookHowTrianglesAreWound) {
@@ -155,8 +158,8 @@ TEST_F(Thickness, DoesNotLookHowTrianglesAreWound) {
     EXPECT_NE(outward.data, inward.data) << "other triangles, other roundings";
     // Depths of 200 mm lie 1.5e-5 mm apart as floats, and each of two walls may come out as either neighbour.
     const auto bound = static_cast<float>(2.0 * 2.0 * 1.5e-5 / calibre_mm);
-    for (int y = 0; y < side; ++y) {
-        for (int x = 0; x < side; ++x) {
+    for (int y = 0; y < thickness_side; ++y) {
+        for (int x = 0; x < thickness_side; ++x) {
             // At the outline walls are steep, and where a triangle lies is rounded, too.
             const bool steep = outward.at(x, y, 0) < 0.1F;
             ASSERT_NEAR(outward.at(x, y, 0), inward.at(x, y, 0), steep ? 4.0F * bound : bound);

@@ -12,12 +12,12 @@
 namespace viscera::io {
 namespace {
 
-struct Sample {
+struct VolumeSample {
     const char* name;
     std::string bytes;
 };
 
-std::vector<Sample> samples() {
+std::vector<VolumeSample> volume_samples() {
     const std::string shorts = test::bytes_of(test::ramp<std::int16_t>());
     const std::string packed = test::deflated(shorts, 15);
     const std::string gzipped = test::deflated(shorts, 31);
@@ -75,7 +75,7 @@ class VolumeDamage : public testing::TestWithParam<std::size_t> {
     }
 
     static constexpr std::uint64_t most_bytes = std::uint64_t{64} << 20U;
-    Sample sample_ = samples()[GetParam()];
+    VolumeSample sample_ = volume_samples()[GetParam()];
     test::TempFolder folder_;
 };
 
@@ -122,9 +122,9 @@ TEST_P(VolumeDamage, OtherDigitsAreSurvived) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Files, VolumeDamage, testing::Range(std::size_t{0}, samples().size()),
+INSTANTIATE_TEST_SUITE_P(Files, VolumeDamage, testing::Range(std::size_t{0}, volume_samples().size()),
                          [](const testing::TestParamInfo<std::size_t>& info) {
-                             std::string name = samples()[info.param].name;
+                             std::string name = volume_samples()[info.param].name;
                              std::ranges::replace(name, '.', '_');
                              return name;
                          });

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -16,6 +17,8 @@ namespace viscera::reference {
 /// voxel centres. bspline: cubic B-spline with the voxels as coefficients (smooths). bspline_prefiltered:
 /// cubic B-spline through the voxels. catmull_rom: Keys' cubic with a = -1/2 (interpolates).
 enum class Filter { nearest, trilinear, bspline, bspline_prefiltered, catmull_rom };
+inline constexpr std::array all_filters{Filter::nearest, Filter::trilinear, Filter::bspline,
+                                        Filter::bspline_prefiltered, Filter::catmull_rom};
 
 /// What lies beyond the outermost voxels: the outermost voxel's value (GL_CLAMP_TO_EDGE), or the volume
 /// mirrored at the outermost voxel's centre (f(-1) = f(1)). For bspline_prefiltered it says how coefficients

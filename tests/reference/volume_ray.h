@@ -43,6 +43,10 @@ struct Limits {
 /// and in [near, far]. None when that is empty or of length 0. A ray in a face of the box is inside.
 [[nodiscard]] std::optional<Interval> intersect(const Ray& ray, const glm::dmat4& texture_to_world,
                                                 const Limits& limits = {});
+/// The same of a field's whole box; empty where the ray passes by.
+[[nodiscard]] inline Interval across(const Ray& ray, const Field& field) {
+    return intersect(ray, field.texture_to_world()).value_or(Interval{});
+}
 
 /// Ray through a place of the picture, uv in [0, 1] from the bottom left: from the eye (orthographic: from
 /// the plane through the eye that faces forward). Any invertible projection, off-axis ones and mirrored ones

@@ -8,7 +8,7 @@
 namespace viscera::reference {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Roots of a t^2 + 2 b t + c.
 void add_roots(double a, double b, double c, std::vector<double>& roots) {

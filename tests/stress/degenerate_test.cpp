@@ -3,14 +3,13 @@
 #include <limits>
 
 #include "engine/io/exr.h"
+#include "tests/core/not_finite.h"
 #include "tests/stress/stage.h"
 
 namespace viscera::test {
 namespace {
 
 using nlohmann::json;
-
-constexpr float nan_value = std::numeric_limits<float>::quiet_NaN();
 
 using Degenerate = Stage;
 
@@ -102,7 +101,7 @@ TEST_F(Degenerate, ViewsOfOtherSizesAreRefusedByName) {
 
 TEST_F(Degenerate, DensityInTheFileIsMended) {
     const auto broken = [](int i) {
-        return i == 40   ? nan_value
+        return i == 40   ? nan_float
                : i == 50 ? -3.0F
                : i == 60 ? 7.0F
                : i == 70 ? std::numeric_limits<float>::infinity()
@@ -138,7 +137,7 @@ TEST_F(Degenerate, DensityOfTheHostIsMended) {
     values[7] = 0.0F;
     values[30] = 1.0F;
     const Image mended = picture();
-    values[7] = nan_value;
+    values[7] = nan_float;
     values[30] = 1e30F;
     expect_same(picture(), mended, "as if the host had been right");
     expect_said_once("contrast.density_nan", "NaN");
@@ -149,7 +148,7 @@ TEST_F(Degenerate, DensityOfTheHostIsMended) {
     expect_said_once("contrast.host_density_count", "have 5 entries");
     values.clear();
     expect_same(picture(), own, "nor an empty one");
-    values.assign(tube_vertices, nan_value);
+    values.assign(tube_vertices, nan_float);
     EXPECT_EQ(largest(picture()), 0.75F) << "no density, no contrast";
 }
 

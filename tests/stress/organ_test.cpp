@@ -1,12 +1,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <sstream>
 
 #include "engine/io/exr.h"
 #include "engine/io/file_bytes.h"
+#include "tests/core/not_finite.h"
 #include "tests/stress/stage.h"
 
 // Organs of odd shape, size and light: finite pictures, and a word where something is left out.
@@ -14,9 +14,6 @@ namespace viscera::test {
 namespace {
 
 using nlohmann::json;
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr float nan_value = std::numeric_limits<float>::quiet_NaN();
 
 class OrganStress : public Stage {
   protected:
@@ -267,14 +264,14 @@ TEST_F(OrganStress, HostsThatSendNonsenseAreHeardOnce) {
     HostValues values;
     Frame frame = renderer().still(0.0);
     frame.values = &values;
-    values.set("spots", std::array{nan_value, 0.0F, 0.0F, 5.0F, 0.0F, 0.0F, 0.0F, -1.0F, 1e30F, 1e30F, 1e30F,
+    values.set("spots", std::array{nan_float, 0.0F, 0.0F, 5.0F, 0.0F, 0.0F, 0.0F, -1.0F, 1e30F, 1e30F, 1e30F,
                                    1e-30F, 7.0F});
-    values.set("cut", std::array{1.0F, nan_value});
+    values.set("cut", std::array{1.0F, nan_float});
     (void)render(frame);
     expect_said_once("organ.spot", "not finite or have no radius");
     expect_said_once("organ.host_spots", "4 floats for each spot");
     expect_said_once("organ.cut_count", "2 entries for 25 vertices");
-    values.set("cut", std::vector<float>(25, nan_value));
+    values.set("cut", std::vector<float>(25, nan_float));
     values.set("spots", std::vector<float>(4 * 61000, 1.0F));
     (void)render(frame);
     expect_said_once("organ.spots", "more than 60000");
@@ -284,8 +281,8 @@ TEST_F(OrganStress, HostsThatSendNonsenseAreHeardOnce) {
 TEST_F(OrganStress, TargetsThatAreNoNumbersReachNoPicture) {
     write_square(20.0, straight, true);
     constexpr auto inf = static_cast<float>(infinity);
-    const std::array<float, 16> texels{nan_value, inf,       -inf, nan_value, 1e38F, -1e38F, 1e38F, 1e38F,
-                                       0.5F,      nan_value, 0.5F, 1.0F,      -7.0F, inf,    1e20F, -inf};
+    const std::array<float, 16> texels{nan_float, inf,       -inf, nan_float, 1e38F, -1e38F, 1e38F, 1e38F,
+                                       0.5F,      nan_float, 0.5F, 1.0F,      -7.0F, inf,    1e20F, -inf};
     // Pictures come in clean, so a host's texture brings them.
     for (const std::string target :
          {"tissue.energy", "tissue.blood_color", "tissue.blood_normal", "tissue.blood_height",
@@ -332,9 +329,9 @@ TEST_F(OrganStress, APictureThatIsNoNumberIsBlurredWithoutIt) {
         // Stripes of 0 and 1, blurred all over.
         texels[i] = i % 4 == 3 ? 1.0F : static_cast<float>(i / 4 % 2);
     }
-    texels[20] = texels[60] = nan_value;
+    texels[20] = texels[60] = nan_float;
     texels[97] = static_cast<float>(infinity);
-    texels[131] = nan_value;
+    texels[131] = nan_float;
     texels[179] = -7.0F;
     const std::array<ImportedTarget, 1> lent{
         ImportedTarget{.name = "organ.color", .format = PixelFormat::rgba32f, .width = 8, .height = 8}};

@@ -2,6 +2,7 @@
 #include <fstream>
 #include <limits>
 
+#include "tests/core/not_finite.h"
 #include "tests/stress/stage.h"
 #include "tests/tissue/plane.h"
 
@@ -9,9 +10,6 @@ namespace viscera::test {
 namespace {
 
 using nlohmann::json;
-
-constexpr float nan_value = std::numeric_limits<float>::quiet_NaN();
-constexpr float inf_value = std::numeric_limits<float>::infinity();
 
 /// Energy on a plane of 40 mm; every target of each frame must be finite.
 class DegenerateEnergy : public Stage {
@@ -51,9 +49,9 @@ TEST_F(DegenerateEnergy, ContactsThatAreNone) {
     load(scene(Plane().write("stress")));
     frame(0.0, {});
     const Image image =
-        frame(0.1, {nan_value, 20, 0, 1,         2,  0,  20,        20, 0, nan_value, 2, 0,  20,
-                    20,        0,  1, inf_value, 0,  20, 20,        0,  1, 2,         9, 20, 20,
-                    0,         1,  2, nan_value, 20, 20, inf_value, 1,  2, 0,         1, 2});
+        frame(0.1, {nan_float,      20, 0,  1,  2, 0, 20, 20, 0,  nan_float, 2, 0, 20, 20,        0,  1,
+                    infinity_float, 0,  20, 20, 0, 1, 2,  9,  20, 20,        0, 1, 2,  nan_float, 20, 20,
+                    infinity_float, 1,  2,  0,  1, 2});
     EXPECT_EQ(largest(image), 0.0F);
     expect_said_once("tissue.contact", "left out");
     EXPECT_GT(largest(frame(0.2, {20, 20, 0, 1, 2, 0})), 0.05F) << "and the next one counts";
@@ -93,14 +91,16 @@ TEST_F(DegenerateEnergy, PlacesAndLimitsThatAreNone) {
         most = now;
     };
     for (const std::vector<float>& from :
-         {std::vector<float>{nan_value, 20, 0}, {20, inf_value, 0}, {20, 20}, {20, 20, 0, 20, 20, 0}}) {
+         {std::vector<float>{nan_float, 20, 0}, {20, infinity_float, 0}, {20, 20}, {20, 20, 0, 20, 20, 0}}) {
         values_.set("tissue.contacts_from", from);
         expect_burnt("from");
     }
     expect_said_once("tissue.contacts_from", "3 finite numbers");
     values_.erase("tissue.contacts_from");
-    for (const std::vector<float>& limit :
-         {std::vector<float>{20, 20, 0, nan_value}, {20, 20, 0, -1}, {inf_value, 20, 0, 5}, {20, 20, 0}}) {
+    for (const std::vector<float>& limit : {std::vector<float>{20, 20, 0, nan_float},
+                                            {20, 20, 0, -1},
+                                            {infinity_float, 20, 0, 5},
+                                            {20, 20, 0}}) {
         values_.set("tissue.limit_to", limit);
         expect_burnt("limit");
     }

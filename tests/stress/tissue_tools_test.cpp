@@ -4,6 +4,7 @@
 #include <string>
 
 #include "effects/tissue/energy_queries.h"
+#include "tests/core/not_finite.h"
 #include "tests/stress/stage.h"
 #include "tests/tissue/plane.h"
 
@@ -13,9 +14,6 @@ namespace {
 
 using nlohmann::json;
 using tissue::EnergyQueries;
-
-constexpr float nan_value = std::numeric_limits<float>::quiet_NaN();
-constexpr float inf_value = std::numeric_limits<float>::infinity();
 
 class TissueTools : public Stage {
   protected:
@@ -67,7 +65,7 @@ class TissueTools : public Stage {
 TEST_F(TissueTools, VerticesThatAreNone) {
     load_mesh({{"file", Plane().write("stress").string()}});
     const std::vector<float> place = tool_at(20, 20, 0);
-    EXPECT_EQ(burnt(hold({nan_value, inf_value, -inf_value, -1.0F, 0.5F, 1e9F, 3e38F}, place)), 0);
+    EXPECT_EQ(burnt(hold({nan_float, infinity_float, -infinity_float, -1.0F, 0.5F, 1e9F, 3e38F}, place)), 0);
     expect_said_once("tissue.held", "are left out");
     std::vector<float> many;
     for (int i = 0; i < 10000; ++i) {
@@ -80,8 +78,8 @@ TEST_F(TissueTools, PosesAndSizesOfAnyKind) {
     load_mesh({{"file", Plane().write("stress").string()}});
     const std::vector<float> held{144, 145};
     for (const std::vector<float>& tool :
-         {tool_at(nan_value, 20, 0), tool_at(20, inf_value, 0), tool_at(20, 20, 0, 0.0F),
-          std::vector<float>(16, 0.0F), std::vector<float>(16, nan_value)}) {
+         {tool_at(nan_float, 20, 0), tool_at(20, infinity_float, 0), tool_at(20, 20, 0, 0.0F),
+          std::vector<float>(16, 0.0F), std::vector<float>(16, nan_float)}) {
         EXPECT_EQ(burnt(hold(held, tool)), 0);
     }
     expect_said_once("tissue.tool_pose", "not finite or has no inverse");

@@ -12,7 +12,7 @@ namespace {
 using nlohmann::json;
 using VolumeSectors = VolumeStress;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// About the world's origin, 8 mm in all.
 Volume sector(VolumeShape shape, const glm::ivec3& dims, double value = 50.0) {

@@ -4,15 +4,14 @@
 
 #include "tests/stress/volume_scene.h"
 
+#include "tests/core/not_finite.h"
+
 // Volumes of odd shape, size, place and content.
 namespace viscera::test {
 namespace {
 
 using nlohmann::json;
 using VolumeShapes = VolumeStress;
-
-constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 json with_function(json parameters, const char* function) {
     parameters["function"] = function;
@@ -175,7 +174,7 @@ TEST_F(VolumeShapes, VoxelsThatAreNoNumbersAreEmpty) {
     constexpr double fill_value = -std::numeric_limits<float>::max();  // where a program has no value
     const auto broken = [=](const glm::ivec3& i) {
         const int n = i.x + 3 * i.y + 5 * i.z;
-        return n % 11 == 0   ? nan_value
+        return n % 11 == 0   ? nan
                : n % 13 == 0 ? infinity
                : n % 17 == 0 ? -infinity
                : n % 19 == 0 ? fill_value
@@ -198,7 +197,7 @@ TEST_F(VolumeShapes, VoxelsThatAreNoNumbersAreEmpty) {
 }
 
 TEST_F(VolumeShapes, NothingButNoNumbersIsAnEmptyVolume) {
-    for (const double value : {nan_value, infinity, -infinity}) {
+    for (const double value : {nan, infinity, -infinity}) {
         const LiveVolume volume(constant_volume(glm::ivec3(4), glm::dvec3(2.0), value));
         EXPECT_TRUE(is_empty(cast(volume, ramp())));
         for (const char* function :

@@ -12,12 +12,12 @@ using VolumeViews = VolumeStress;
 
 constexpr double side_mm = 8.0;
 
-Volume block() {
+Volume bright_block() {
     return constant_volume(glm::ivec3(4), glm::dvec3(side_mm / 4.0), 50.0);
 }
 
 TEST_F(VolumeViews, CamerasOnFacesInCornersInsideAndBeside) {
-    const LiveVolume volume(block());
+    const LiveVolume volume(bright_block());
     const glm::dmat4 to_world = volume.volume().grid.texture_to_world();
     for (const json& eye : {json{0, 0, 0}, json{0, -4, 0}, json{-4, -4, 0}, json{-4, -4, -4}, json{4, 4, 4},
                             json{0.5, -1.5, 2}, json{2, 2, 2}, json{0, 0, 4}, json{1e-12, 0, -4}}) {
@@ -47,7 +47,7 @@ TEST_F(VolumeViews, InsideUnderEveryFunction) {
 }
 
 TEST_F(VolumeViews, RaysAlongTheFaces) {
-    const LiveVolume volume(block());
+    const LiveVolume volume(bright_block());
     const glm::dmat4 to_world = volume.volume().grid.texture_to_world();
     // Rays parallel to two pairs of faces, some of them in the faces between voxels. 16 rows over 16 mm: half
     // of the way between rows lies on the box's faces.
@@ -77,7 +77,7 @@ TEST_F(VolumeViews, RaysAlongTheFaces) {
 }
 
 TEST_F(VolumeViews, LookingAwayShowsNothing) {
-    const LiveVolume volume(block());
+    const LiveVolume volume(bright_block());
     for (const json& target : {json{0, -50, 0}, json{40, -25, 0}, json{0, -25, 40}}) {
         EXPECT_TRUE(is_empty(cast(volume, homogeneous(), camera({0, -25, 0}, target))));
     }
@@ -85,7 +85,7 @@ TEST_F(VolumeViews, LookingAwayShowsNothing) {
 }
 
 TEST_F(VolumeViews, NearAndFarPlanesCut) {
-    const LiveVolume volume(block());
+    const LiveVolume volume(bright_block());
     const glm::dmat4 to_world = volume.volume().grid.texture_to_world();
     for (const auto& [near, far] : {std::pair(25.0, 1000.0), std::pair(0.01, 25.0), std::pair(24.0, 24.001),
                                     std::pair(25.0, 25.0000001)}) {
@@ -103,7 +103,7 @@ TEST_F(VolumeViews, NearAndFarPlanesCut) {
 }
 
 TEST_F(VolumeViews, EyesFarAway) {
-    const LiveVolume volume(block());
+    const LiveVolume volume(bright_block());
     const glm::dmat4 to_world = volume.volume().grid.texture_to_world();
     for (const double far : {1e3, 1e6, 1e8}) {
         json view = orthographic({0.1 * far, -far, 0.2 * far}, {0, 0, 0}, 14.0);
@@ -117,7 +117,7 @@ TEST_F(VolumeViews, EyesFarAway) {
 }
 
 TEST_F(VolumeViews, TargetsOfAnyShape) {
-    const LiveVolume volume(block());
+    const LiveVolume volume(bright_block());
     for (const char* effect : {"analytic", "two_pass"}) {
         json parameters = homogeneous();
         parameters["sampling"]["limits"] = effect;
@@ -146,7 +146,7 @@ TEST_F(VolumeViews, TargetsOfAnyShape) {
 }
 
 TEST_F(VolumeViews, DrawnLimitsFromEverywhere) {
-    const LiveVolume volume(block());
+    const LiveVolume volume(bright_block());
     const json where{{"volume", {{"host", "host"}}}};
     for (const json& eye : {json{3, -25, 4}, json{0, 0, 0}, json{0.5, -3.9, 1}, json{0, -60, 0}}) {
         const Image analytic = cast(volume, homogeneous(), camera(eye, {1, 2, -1}));

@@ -11,7 +11,7 @@
 namespace viscera::test {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// What deviates most, over all texels inside charts.
 struct Worst {

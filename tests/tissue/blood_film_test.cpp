@@ -24,7 +24,7 @@ json plain_liquid(double steps_per_s) {
 }
 
 constexpr double length_mm = 96.0;
-constexpr double side_mm = 6.0;
+constexpr double film_side_mm = 6.0;
 
 /// A slug of blood let go on a vertical wall (F12): once the fan from its rear has met its front, its height
 /// is sqrt(x / (G t)) up to the front, whose place follows from the volume.
@@ -84,7 +84,7 @@ Profile profile(BloodStage& stage, double time_s) {
 }
 
 SurfaceChart strip(double from, double to, glm::dvec2 origin, glm::dvec2 a, glm::dvec2 b) {
-    return {.low = {from, 0.0}, .high = {to, side_mm}, .origin_px = origin, .a_px = a, .b_px = b};
+    return {.low = {from, 0.0}, .high = {to, film_side_mm}, .origin_px = origin, .a_px = a, .b_px = b};
 }
 
 /// Falls along +x.
@@ -111,7 +111,7 @@ TEST(BloodFilm, FallsAsAThinFilmDoes) {
         std::printf(
             "  t %4.1f s: front %.3f mm, F12 %.3f mm (%+.2f %%), heights off by %.2f %%, volume %+.1e\n",
             time, found.front, front_at(time), 100.0 * (found.front / front_at(time) - 1.0), 100.0 * found.l1,
-            found.volume / (section_mm2 * side_mm) - 1.0);
+            found.volume / (section_mm2 * film_side_mm) - 1.0);
         EXPECT_NEAR(found.front / front_at(time), 1.0, 0.01);
         // Of first order: the front is smeared over some of the 140 cells that it has passed.
         EXPECT_LT(found.l1, 0.03);

@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double radius_mm = 12.0;
 constexpr int around = 36;
 constexpr int rings = 18;

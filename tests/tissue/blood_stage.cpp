@@ -4,6 +4,8 @@
 #include <cmath>
 #include <sstream>
 
+#include <gtest/gtest.h>
+
 #include "engine/io/exr.h"
 
 namespace viscera::test {
@@ -168,6 +170,19 @@ reference::TissueSurface BloodStage::baked() {
         }
     }
     return surface;
+}
+
+void expect_finite(const Image& image) {
+    for (const float value : to_floats(image)) {
+        ASSERT_TRUE(std::isfinite(value));
+    }
+}
+
+void expect_finite(BloodStage& stage) {
+    for (const char* target : {"tissue.blood_height", "tissue.blood_color", "tissue.blood_normal"}) {
+        SCOPED_TRACE(target);
+        expect_finite(stage.read(target));
+    }
 }
 
 }  // namespace viscera::test

@@ -88,4 +88,8 @@ class BloodStage {
     double time_s_ = 0.0;
 };
 
+/// Fails the test where a picture, or one of those that blood gives, holds what is no number.
+void expect_finite(const Image& image);
+void expect_finite(BloodStage& stage);
+
 }  // namespace viscera::test

@@ -32,12 +32,6 @@ json wound(double x, double y, double rate) {
     return {{"position_mm", {p.x, p.y, p.z}}, {"rate_mm3_s", rate}};
 }
 
-void expect_finite(const Image& image) {
-    for (const float value : to_floats(image)) {
-        ASSERT_TRUE(std::isfinite(value));
-    }
-}
-
 TEST(BloodTime, NoFrameRateChangesTheBlood) {
     std::map<std::string, std::vector<std::byte>> first;
     for (const double step : {1.0 / 15.0, 1.0 / 240.0, 0.2}) {

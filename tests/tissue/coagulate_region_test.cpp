@@ -21,7 +21,7 @@ namespace {
 using tissue::TileTree;
 
 constexpr int size = 256;
-constexpr double side_mm = 40.0;
+constexpr double region_side_mm = 40.0;
 
 /// Everything is there, in square targets.
 class Preparation final : public Prepare {
@@ -60,7 +60,7 @@ std::array<int, 4> tiles_of(Rule rule) {
     for (int y = 0; y < size; ++y) {
         for (int x = 0; x < size; ++x) {
             const glm::dvec2 uv((x + 0.5) / size, (y + 0.5) / size);
-            const glm::dvec2 place = (uv - 0.0625) / 0.875 * side_mm;
+            const glm::dvec2 place = (uv - 0.0625) / 0.875 * region_side_mm;
             if (rule(place)) {
                 box = {std::min(box[0], x / t * t), std::min(box[1], y / t * t),
                        std::max(box[2], x / t * t + t), std::max(box[3], y / t * t + t)};
@@ -98,7 +98,7 @@ TEST(EnergyRegion, IsWhatAContactReaches) {
         };
         const std::array<int, 4> drawn = corners_of(work);
         const std::array<int, 4> least = within(reach);
-        const std::array<int, 4> most = within(reach + side_mm / cells);
+        const std::array<int, 4> most = within(reach + region_side_mm / cells);
         for (const std::size_t low : {0U, 1U}) {
             EXPECT_LE(drawn[low], least[low]);
             EXPECT_GE(drawn[low], most[low]);

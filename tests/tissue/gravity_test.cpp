@@ -23,12 +23,6 @@ Downhill at(const Image& map, int x, int y) {
     return {{map.at(x, y, 0), map.at(x, y, 1)}, map.at(x, y, 2), map.at(x, y, 3)};
 }
 
-void expect_finite(const Image& image) {
-    for (const float value : to_floats(image)) {
-        ASSERT_TRUE(std::isfinite(value));
-    }
-}
-
 TEST(GravityMap, IsExactOnAPlane) {
     BloodStage stage(128);
     // The texture lies askew on the plane, and is stretched.

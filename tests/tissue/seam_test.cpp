@@ -18,7 +18,7 @@
 namespace viscera::test {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 glm::dvec2 turned(const glm::dvec2& p, double degrees) {
     const double angle = degrees * pi / 180.0;

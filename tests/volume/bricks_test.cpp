@@ -7,18 +7,15 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <random>
 #include <string>
 
 #include "engine/core/error.h"
+#include "tests/core/not_finite.h"
 #include "tests/volume/cells.h"
 
 namespace viscera::volume {
 namespace {
-
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-constexpr float infinity = std::numeric_limits<float>::infinity();
 
 template <typename T>
 constexpr ScalarType scalar_type = ScalarType::f32;
@@ -50,7 +47,7 @@ std::vector<T> random_values(std::size_t count, std::uint_fast32_t seed) {
     std::vector<T> values(count);
     for (T& value : values) {
         if constexpr (std::is_floating_point_v<T>) {
-            const std::array<float, 4> odd{nan, infinity, -infinity, -1e30F};
+            const std::array<float, 4> odd{nan_float, infinity_float, -infinity_float, -1e30F};
             const std::uint_fast32_t n = random();
             value = n % 8U < 4U ? odd[n % 4U] : static_cast<float>(static_cast<int>(random() % 2001U) - 1000);
         } else {
@@ -65,8 +62,8 @@ template <typename T>
 BrickGrid brute_force(const glm::ivec3& dims, const std::vector<T>& values, int channels, int channel,
                       int size, int border, float empty) {
     BrickGrid bricks{.dims = (dims + size - 1) / size, .size = size, .border = border};
-    bricks.min.assign(count_of(bricks.dims), infinity);
-    bricks.max.assign(count_of(bricks.dims), -infinity);
+    bricks.min.assign(count_of(bricks.dims), infinity_float);
+    bricks.max.assign(count_of(bricks.dims), -infinity_float);
     for_each(bricks.dims, [&](std::size_t b, const glm::ivec3& brick) {
         for_each(glm::ivec3(size + 2 * border), [&](std::size_t, const glm::ivec3& offset) {
             const glm::ivec3 voxel = brick * size - border + offset;
@@ -164,7 +161,7 @@ TEST(Summary, a_change_makes_only_the_bricks_again_that_it_reaches) {
 }
 
 TEST(Summary, nan_and_infinite_voxels_count_as_empty) {
-    const Volume volume = volume_of<float>({4, 1, 1}, {nan, infinity, -infinity, 5.0F});
+    const Volume volume = volume_of<float>({4, 1, 1}, {nan_float, infinity_float, -infinity_float, 5.0F});
     const BrickGrid bricks = summarise(volume, 0, 2, 0, -3.0F);
     EXPECT_THAT(bricks.min, testing::ElementsAre(-3.0F, -3.0F));
     EXPECT_THAT(bricks.max, testing::ElementsAre(-3.0F, 5.0F));

@@ -13,13 +13,13 @@
 namespace viscera::test {
 namespace {
 
-constexpr int side = 24;
+constexpr int colours_side = 24;
 
 /// Smooth blobs of colour in black, 8 bits a channel; the least and greatest value are 0 and 255.
 Volume blobs(int channels) {
-    Volume volume{.grid = {.dims = glm::ivec3(side),
+    Volume volume{.grid = {.dims = glm::ivec3(colours_side),
                            .spacing_mm = glm::dvec3(2.0),
-                           .origin_mm = glm::dvec3(-1.0 * (side - 1))},
+                           .origin_mm = glm::dvec3(-1.0 * (colours_side - 1))},
                   .type = ScalarType::u8,
                   .channels = channels,
                   .source = "blobs"};
@@ -27,11 +27,11 @@ Volume blobs(int channels) {
     const auto unit = [&] { return static_cast<double>(random() >> 8U) / 16777216.0; };
     std::vector<glm::dvec3> centres;
     for (int c = 0; c < channels; ++c) {
-        centres.push_back(double{side} * (0.3 + 0.4 * glm::dvec3(unit(), unit(), unit())));
+        centres.push_back(double{colours_side} * (0.3 + 0.4 * glm::dvec3(unit(), unit(), unit())));
     }
-    for (int z = 0; z < side; ++z) {
-        for (int y = 0; y < side; ++y) {
-            for (int x = 0; x < side; ++x) {
+    for (int z = 0; z < colours_side; ++z) {
+        for (int y = 0; y < colours_side; ++y) {
+            for (int x = 0; x < colours_side; ++x) {
                 for (const glm::dvec3& centre : centres) {
                     const double r = glm::length(glm::dvec3(x, y, z) - centre) / 8.0;
                     const double value = r < 1.0 ? 255.0 * (1.0 - r) * (0.8 + 0.2 * unit()) : 0.0;
@@ -49,7 +49,7 @@ class ColourAccumulation : public testing::Test {
     /// Slabs as long as the length that opacities are for.
     static nlohmann::json parameters(const nlohmann::json& channels) {
         const double slab_mm = 0.5;
-        const double diagonal_mm = std::sqrt(3.0) * 2.0 * side;
+        const double diagonal_mm = std::sqrt(3.0) * 2.0 * colours_side;
         return {{"function", "accumulate"},
                 {"accumulate",
                  {{"opacity", 1.5},

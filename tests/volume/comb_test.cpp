@@ -12,9 +12,9 @@
 namespace viscera::test {
 namespace {
 
-constexpr double side_mm = 100.0;
-constexpr int voxels = 16;
-const std::vector<double> counts{16, 32, 64, 128, 256, 512, 1024};  // samples per ray
+constexpr double comb_side_mm = 100.0;
+constexpr int comb_voxels = 16;
+const std::vector<double> comb_counts{16, 32, 64, 128, 256, 512, 1024};  // samples per ray
 
 /// Rays along z through a ramp that differs a little from ray to ray, from 0 to 1.
 constexpr std::string_view ramp =
@@ -25,26 +25,27 @@ double ramp_at(const reference::Ray& ray, double z) {
 
 /// The table's range is the host volume's.
 LiveVolume unit_range() {
-    return LiveVolume(float_volume(glm::ivec3(voxels), glm::dvec3(side_mm / voxels), [](const glm::dvec3& p) {
-        return std::clamp(p.z / (side_mm * (1.0 - 1.0 / voxels)) + 0.5, 0.0, 1.0);
-    }));
+    return LiveVolume(float_volume(
+        glm::ivec3(comb_voxels), glm::dvec3(comb_side_mm / comb_voxels), [](const glm::dvec3& p) {
+            return std::clamp(p.z / (comb_side_mm * (1.0 - 1.0 / comb_voxels)) + 0.5, 0.0, 1.0);
+        }));
 }
 
-struct Errors {
+struct CombErrors {
     std::vector<double> rms;
     std::vector<double> worst;
 };
 
-Errors errors(VolumeStage& stage, std::string_view scheme, const nlohmann::json& points,
-              const WantedColour& wanted, std::span<const double> n) {
+CombErrors errors(VolumeStage& stage, std::string_view scheme, const nlohmann::json& points,
+                  const WantedColour& wanted, std::span<const double> n) {
     const LiveVolume volume = unit_range();
-    Errors found;
+    CombErrors found;
     for (const double count : n) {
         const nlohmann::json parameters{
             {"transfer_function", {{"points", points}, {"entries", 16384}, {"interpolate", true}}},
             {"sampling",
-             {{"scheme", scheme}, {"step", voxels / count}, {"termination", 0}, {"skip", false}}}};
-        const Look look{.eye_mm = {0, 0, -300}, .up = {0, 1, 0}, .orthographic_mm = 0.9 * side_mm};
+             {{"scheme", scheme}, {"step", comb_voxels / count}, {"termination", 0}, {"skip", false}}}};
+        const Look look{.eye_mm = {0, 0, -300}, .up = {0, 1, 0}, .orthographic_mm = 0.9 * comb_side_mm};
         const Miss m = miss(stage.cast(volume, parameters, look, glm::ivec2(16)), wanted);
         found.rms.push_back(m.rms);
         found.worst.push_back(m.worst);
@@ -52,7 +53,7 @@ Errors errors(VolumeStage& stage, std::string_view scheme, const nlohmann::json&
     return found;
 }
 
-double geometric_mean_of_ratios(const Errors& a, const Errors& b) {
+double geometric_mean_of_ratios(const CombErrors& a, const CombErrors& b) {
     double sum = 0.0;
     for (std::size_t i = 0; i < a.rms.size(); ++i) {
         sum += std::log(a.rms[i] / b.rms[i]);
@@ -60,7 +61,7 @@ double geometric_mean_of_ratios(const Errors& a, const Errors& b) {
     return std::exp(sum / static_cast<double>(a.rms.size()));
 }
 
-void print(const char* name, const Errors& e) {
+void print(const char* name, const CombErrors& e) {
     std::printf("  %-14s", name);
     for (const double error : e.rms) {
         std::printf(" %.1e", error);
@@ -89,18 +90,18 @@ TEST(CombFunction, PreintegrationIsAHundredTimesNearer) {
         comb.push_back({low, high});
     }
     const auto wanted = [&](const reference::Ray& ray) {
-        const double s0 = ramp_at(ray, -0.5 * side_mm);
-        const double s1 = ramp_at(ray, 0.5 * side_mm);
-        const double tau =
-            reference::comb_depth({.s0 = s0, .g = (s1 - s0) / side_mm, .length = side_mm, .k = k}, comb);
+        const double s0 = ramp_at(ray, -0.5 * comb_side_mm);
+        const double s1 = ramp_at(ray, 0.5 * comb_side_mm);
+        const double tau = reference::comb_depth(
+            {.s0 = s0, .g = (s1 - s0) / comb_side_mm, .length = comb_side_mm, .k = k}, comb);
         const double alpha = 1.0 - std::exp(-tau);
         return std::optional(glm::dvec4(alpha * glm::dvec3(0.9, 0.6, 0.3), alpha));
     };
-    VolumeStage stage({{"volume/sample.glsl", field_text(ramp, glm::dvec3(side_mm))}});
-    const Errors pre = errors(stage, "preintegrated", points, wanted, counts);
+    VolumeStage stage({{"volume/sample.glsl", field_text(ramp, glm::dvec3(comb_side_mm))}});
+    const CombErrors pre = errors(stage, "preintegrated", points, wanted, comb_counts);
     print("preintegrated", pre);
     for (const char* scheme : {"midpoint", "gauss"}) {
-        const Errors post = errors(stage, scheme, points, wanted, counts);
+        const CombErrors post = errors(stage, scheme, points, wanted, comb_counts);
         print(scheme, post);
         const double ratio = geometric_mean_of_ratios(post, pre);
         std::printf("  %s errs %.0f times as much\n", scheme, ratio);
@@ -136,8 +137,9 @@ TEST(CombFunction, PreintegrationCostsLittleOnSmoothFunctions) {
     const std::vector<double> n{16, 32, 64, 128};
     for (const Case& c : cases) {
         SCOPED_TRACE(c.name);
-        const glm::dmat4 box(glm::dvec4(side_mm, 0, 0, 0), glm::dvec4(0, side_mm, 0, 0),
-                             glm::dvec4(0, 0, side_mm, 0), glm::dvec4(glm::dvec3(-0.5 * side_mm), 1));
+        const glm::dmat4 box(glm::dvec4(comb_side_mm, 0, 0, 0), glm::dvec4(0, comb_side_mm, 0, 0),
+                             glm::dvec4(0, 0, comb_side_mm, 0),
+                             glm::dvec4(glm::dvec3(-0.5 * comb_side_mm), 1));
         const reference::Field field = reference::Field::in_world(c.value, {}, box);
         // The rays are the same in all pictures.
         std::map<std::pair<double, double>, glm::dvec4> known;
@@ -149,10 +151,10 @@ TEST(CombFunction, PreintegrationCostsLittleOnSmoothFunctions) {
             }
             return std::optional(at->second);
         };
-        VolumeStage stage({{"volume/sample.glsl", field_text(c.field, glm::dvec3(side_mm))}});
-        const Errors pre = errors(stage, "preintegrated", points, wanted, n);
-        const Errors post = errors(stage, "midpoint", points, wanted, n);
-        const Errors gauss = errors(stage, "gauss", points, wanted, n);
+        VolumeStage stage({{"volume/sample.glsl", field_text(c.field, glm::dvec3(comb_side_mm))}});
+        const CombErrors pre = errors(stage, "preintegrated", points, wanted, n);
+        const CombErrors post = errors(stage, "midpoint", points, wanted, n);
+        const CombErrors gauss = errors(stage, "gauss", points, wanted, n);
         std::printf("  %s\n", c.name);
         print("preintegrated", pre);
         print("midpoint", post);

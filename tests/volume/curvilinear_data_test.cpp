@@ -19,7 +19,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Samples on axes of their own, mixed linearly; `wrap`: axis around which the first follows the last.
 struct Samples {

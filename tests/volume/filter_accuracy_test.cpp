@@ -143,14 +143,14 @@ TEST_F(FilterAccuracyTest, WeightsOfEightBitsLimitThePrefilteredSplineAndNoFullP
     }
 }
 
-struct Errors {
+struct FilterErrors {
     double value = 0.0;
     double gradient = 0.0;
 };
 
 /// Root mean squares on a product of cosines, which goes on beyond the box as coefficients do at a clamped
 /// edge: the box has no boundary that would disturb.
-Errors errors_at(VolumeSampler& sampler, const FilterKind& kind, int n) {
+FilterErrors errors_at(VolumeSampler& sampler, const FilterKind& kind, int n) {
     constexpr double pi = std::numbers::pi;
     const glm::dvec3 k(2.0 * pi, pi, 3.0 * pi);
     const auto value = [&](const glm::dvec3& t) {
@@ -166,7 +166,7 @@ Errors errors_at(VolumeSampler& sampler, const FilterKind& kind, int n) {
     }));
     const std::vector<glm::vec3> places = places_in(0.4, 20000);
     const auto samples = sampler.sample(source, kind.reconstruction, Storage::texture_3d, places);
-    Errors sum;
+    FilterErrors sum;
     for (std::size_t i = 0; i < places.size(); ++i) {
         const glm::dvec3 t(places[i]);
         const glm::dvec3 off = samples[i].gradient - gradient(t);
@@ -184,8 +184,8 @@ TEST_F(FilterAccuracyTest, ErrorsFallWithTheFiltersOrders) {
             continue;
         }
         SCOPED_TRACE(kind.name);
-        const Errors coarse = errors_at(sampler_, kind, 24);
-        const Errors fine = errors_at(sampler_, kind, 48);
+        const FilterErrors coarse = errors_at(sampler_, kind, 24);
+        const FilterErrors fine = errors_at(sampler_, kind, 48);
         const double value_order = std::log2(coarse.value / fine.value);
         const double gradient_order = std::log2(coarse.gradient / fine.gradient);
         const auto [value_due, gradient_due] =

@@ -11,18 +11,18 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int side = 96;
+constexpr int fovea_side = 96;
 
 class Fovea : public testing::TestWithParam<ComputeUse> {
   protected:
     static json scene_with(const json& sampling) {
         json parameters{{"transfer_function", shell_function()}, {"sampling", sampling}};
-        return mixed_scene(json::array(), parameters, camera_at({60, -420, 90}), side, side);
+        return mixed_scene(json::array(), parameters, camera_at({60, -420, 90}), fovea_side, fovea_side);
     }
     Image shot(const json& sampling) { return mixed_shot(stage_, scene_with(sampling), volume_); }
     /// Radius of a pixel about a centre in UV, in heights of the picture.
     static double away(int x, int y, const glm::dvec2& centre) {
-        return glm::distance((glm::dvec2(x, y) + 0.5) / static_cast<double>(side), centre);
+        return glm::distance((glm::dvec2(x, y) + 0.5) / static_cast<double>(fovea_side), centre);
     }
 
     LiveVolume volume_{shell_volume()};
@@ -38,8 +38,8 @@ TEST_P(Fovea, EachRegionHasItsStepsPicture) {
     const Image coarse = shot({{"step", 2.0}});
     std::size_t within = 0;
     std::size_t beyond = 0;
-    for (int y = 0; y < side; ++y) {
-        for (int x = 0; x < side; ++x) {
+    for (int y = 0; y < fovea_side; ++y) {
+        for (int x = 0; x < fovea_side; ++x) {
             const double r = away(x, y, centre);
             for (int c = 0; c < 4; ++c) {
                 if (r < 0.119) {
@@ -86,7 +86,7 @@ TEST_P(Fovea, NoRingIsSeen) {
     // Longer steps err by this or that from pixel to pixel, as they do everywhere. A ring is what all pixels
     // of a circle have in common: that they err otherwise than they would with the step of the next circle.
     const auto worst_ring = [&](double radius, double outer_radius, double factor) {
-        const double pixel = 1.0 / side;
+        const double pixel = 1.0 / fovea_side;
         const auto with = [&](double by) {
             return shot(
                 {{"step", 0.25},
@@ -95,11 +95,11 @@ TEST_P(Fovea, NoRingIsSeen) {
         };
         const Image here = with(0.0);
         const Image next = with(pixel);
-        std::array<std::array<double, 4>, side> sums{};
-        std::array<int, side> counts{};
-        for (int y = 0; y < side; ++y) {
-            for (int x = 0; x < side; ++x) {
-                const auto circle = static_cast<std::size_t>(away(x, y, {0.5, 0.5}) * side);
+        std::array<std::array<double, 4>, fovea_side> sums{};
+        std::array<int, fovea_side> counts{};
+        for (int y = 0; y < fovea_side; ++y) {
+            for (int x = 0; x < fovea_side; ++x) {
+                const auto circle = static_cast<std::size_t>(away(x, y, {0.5, 0.5}) * fovea_side);
                 ++counts.at(circle);
                 for (int c = 0; c < 4; ++c) {
                     sums.at(circle).at(static_cast<std::size_t>(c)) +=
@@ -108,7 +108,7 @@ TEST_P(Fovea, NoRingIsSeen) {
             }
         }
         double worst = 0.0;
-        for (std::size_t circle = 5; circle < side / 2; ++circle) {
+        for (std::size_t circle = 5; circle < fovea_side / 2; ++circle) {
             for (const double sum : sums.at(circle)) {
                 worst = std::max(worst, std::abs(sum) / counts.at(circle));
             }

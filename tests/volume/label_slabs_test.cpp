@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int voxels = 16;
+constexpr int slab_voxels = 16;
 constexpr double spacing_mm = 5.0;
 constexpr double wall_mm = 10.0;  // where the segments meet: y, between voxels of the labels
 
@@ -66,7 +66,7 @@ class LabelSlabs : public testing::Test {
         return miss(shot, [&](const reference::Ray& ray) -> std::optional<glm::dvec4> {
             const auto interval = reference::intersect(
                 ray, field.texture_to_world(),
-                {.crop_min = glm::dvec3(1.0 / voxels), .crop_max = glm::dvec3(1.0 - 1.0 / voxels)});
+                {.crop_min = glm::dvec3(1.0 / slab_voxels), .crop_max = glm::dvec3(1.0 - 1.0 / slab_voxels)});
             if (!interval) {
                 return std::nullopt;
             }
@@ -91,22 +91,23 @@ class LabelSlabs : public testing::Test {
                            double step) {
         json second = segment;
         second["id"] = 2;
-        return {{"transfer_function",
-                 {{"points", points_of(function)}, {"entries", 16384}, {"interpolate", true}}},
-                {"labels", {{"host", "labels"}, {"segments", {second}}}},
-                // Without the faces, at which the ramp bends.
-                {"crop", {{"first", {1, 1, 1}}, {"size", {voxels - 2, voxels - 2, voxels - 2}}}},
-                {"sampling",
-                 {{"scheme", scheme}, {"step", step}, {"termination", 0}, {"filter", "linear_fp32"}}}};
+        return {
+            {"transfer_function",
+             {{"points", points_of(function)}, {"entries", 16384}, {"interpolate", true}}},
+            {"labels", {{"host", "labels"}, {"segments", {second}}}},
+            // Without the faces, at which the ramp bends.
+            {"crop", {{"first", {1, 1, 1}}, {"size", {slab_voxels - 2, slab_voxels - 2, slab_voxels - 2}}}},
+            {"sampling",
+             {{"scheme", scheme}, {"step", step}, {"termination", 0}, {"filter", "linear_fp32"}}}};
     }
 
     Stage stage_;
     /// A slanted ramp from 0 to 1.
-    LiveVolume volume_{float_volume(glm::ivec3(voxels), glm::dvec3(spacing_mm), [](const glm::dvec3& p) {
+    LiveVolume volume_{float_volume(glm::ivec3(slab_voxels), glm::dvec3(spacing_mm), [](const glm::dvec3& p) {
         return std::clamp(0.5 + 0.0072 * p.y + 0.004 * p.z + 0.002 * p.x, 0.0, 1.0);
     })};
     LiveVolume labels_{
-        byte_volume(voxels, spacing_mm, [](const glm::dvec3& p) { return p.y > wall_mm ? 2.0 : 1.0; })};
+        byte_volume(slab_voxels, spacing_mm, [](const glm::dvec3& p) { return p.y > wall_mm ? 2.0 : 1.0; })};
     Look look_{.eye_mm = {40, -330, 90}, .fov_deg = 16};
 };
 

@@ -10,7 +10,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int side = 64;
+constexpr int look_side = 64;
 
 /// A picture from several host volumes.
 Image shot(Stage& stage, const json& scene, std::span<const HostVolume> volumes,
@@ -28,7 +28,7 @@ Image shot(Stage& stage, const json& scene, std::span<const HostVolume> volumes,
 }
 
 json scene(json parameters, const json& camera) {
-    return mixed_scene(json::array(), std::move(parameters), camera, side, side);
+    return mixed_scene(json::array(), std::move(parameters), camera, look_side, look_side);
 }
 
 /// Everything seen alike.
@@ -107,14 +107,14 @@ TEST_F(LookPicture, shading_is_blinn_phong_of_the_gradient_in_the_world) {
         const View view = stage_.renderer().still(0.0).eye();
         const glm::dvec3 normal = -glm::normalize(rise);
         int seen = 0;
-        for (int y = 0; y < side; ++y) {
-            for (int x = 0; x < side; ++x) {
+        for (int y = 0; y < look_side; ++y) {
+            for (int x = 0; x < look_side; ++x) {
                 const glm::dvec4 got = pixel(image, x, y);
                 if (got.a < 0.05) {
                     continue;
                 }
                 ++seen;
-                const glm::dvec3 towards_eye = -pixel_ray(view, x, y, side, side).direction;
+                const glm::dvec3 towards_eye = -pixel_ray(view, x, y, look_side, look_side).direction;
                 const glm::dvec3 l = at_eye ? towards_eye : light;
                 const glm::dvec3 h = glm::normalize(l + towards_eye);
                 const glm::dvec3 of_light = at_eye ? glm::dvec3(1.0) : glm::dvec3(1.0, 0.9, 0.8);
@@ -138,7 +138,7 @@ TEST_F(LookPicture, without_a_gradient_only_ambient_light) {
                                     {"shading", {{"enabled", true}, {"lighting", {{"ambient", 0.25}}}}}},
                                    camera_at({150, -260, 90})),
                              std::span(&given, 1));
-    const glm::dvec4 middle = pixel(image, side / 2, side / 2);
+    const glm::dvec4 middle = pixel(image, look_side / 2, look_side / 2);
     ASSERT_GT(middle.a, 0.3);
     EXPECT_NEAR(middle.r / middle.a, 0.25 * 0.8, 1e-6);
     EXPECT_NEAR(middle.b / middle.a, 0.25 * 0.2, 1e-6);
@@ -158,9 +158,10 @@ TEST_F(LookPicture, gradient_opacity_is_a_factor_on_the_opacity) {
                             {{"gradient", 1.5 * glm::length(rise)}, {"factor", 1}}};
     const Image image =
         shot(stage_, scene({{"transfer_function", function}, {"crop", crop}}, camera), std::span(&given, 1));
-    const double a = pixel(plain, side / 2, side / 2).a;
+    const double a = pixel(plain, look_side / 2, look_side / 2).a;
     const double length_mm = std::log1p(-a) / std::log1p(-0.04);
-    EXPECT_NEAR(pixel(image, side / 2, side / 2).a, 1.0 - std::pow(1.0 - 0.04 * 2.0 / 3.0, length_mm), 2e-5);
+    EXPECT_NEAR(pixel(image, look_side / 2, look_side / 2).a,
+                1.0 - std::pow(1.0 - 0.04 * 2.0 / 3.0, length_mm), 2e-5);
 }
 
 TEST_F(LookPicture, clipped_chords_are_exact) {
@@ -174,9 +175,9 @@ TEST_F(LookPicture, clipped_chords_are_exact) {
                  std::span(&given, 1));
         const View view = stage_.renderer().still(0.0).eye();
         int cut = 0;
-        for (int y = 0; y < side; ++y) {
-            for (int x = 0; x < side; ++x) {
-                const PixelRay ray = pixel_ray(view, x, y, side, side);
+        for (int y = 0; y < look_side; ++y) {
+            for (int x = 0; x < look_side; ++x) {
+                const PixelRay ray = pixel_ray(view, x, y, look_side, look_side);
                 glm::dvec2 s = box_interval(ray, glm::dvec3(-40.0), glm::dvec3(40.0));
                 const double whole = s.y - s.x;
                 for (const json& plane : planes) {
@@ -225,8 +226,8 @@ TEST_F(LookPicture, labels_are_never_mixed) {
         shot(stage_, scene({{"transfer_function", even_function()}, {"labels", look}}, camera), given);
     int red = 0;
     int green = 0;
-    for (int x = 0; x < side; ++x) {
-        const glm::dvec4 got = pixel(image, x, side / 2);
+    for (int x = 0; x < look_side; ++x) {
+        const glm::dvec4 got = pixel(image, x, look_side / 2);
         if (got.a > 0.0) {
             EXPECT_EQ(got.b, 0.0);
             EXPECT_TRUE(got.r == 0.0 || got.g == 0.0) << x;
@@ -278,7 +279,7 @@ TEST_F(LookPicture, the_overlay_gives_the_hue) {
         shot(stage_,
              scene({{"transfer_function", even_function()}, {"overlay", look}}, camera_at({150, -260, 90})),
              given);
-    const glm::dvec4 got = pixel(image, side / 2, side / 2);
+    const glm::dvec4 got = pixel(image, look_side / 2, look_side / 2);
     ASSERT_GT(got.a, 0.3);
     // (0, 0.5, 0.5) at the brightness 0.8 is (0, 0.8, 0.8); half of the way from (0.8, 0.5, 0.2).
     EXPECT_NEAR(got.r / got.a, 0.4, 1e-3);

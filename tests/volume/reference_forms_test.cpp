@@ -41,10 +41,6 @@ std::vector<Ray> test_rays(int count, unsigned seed = 7) {
     return rays;
 }
 
-Interval across(const Ray& ray, const Field& field) {
-    return intersect(ray, field.texture_to_world()).value_or(Interval{});
-}
-
 /// The field's length where it is >= 1/2.
 double length_inside(const Field& field, const Ray& ray) {
     const Interval interval = across(ray, field);

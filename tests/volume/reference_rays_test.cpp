@@ -13,9 +13,6 @@
 namespace viscera::reference {
 namespace {
 
-constexpr Filter all_filters[] = {Filter::nearest, Filter::trilinear, Filter::bspline,
-                                  Filter::bspline_prefiltered, Filter::catmull_rom};
-
 const glm::ivec3 noise_dims(9, 7, 8);
 
 std::vector<double> noise(unsigned seed = 1) {
@@ -36,7 +33,7 @@ Field noise_field(Filter filter, unsigned seed = 1) {
     return {noise_dims, noise(seed), filter, to_world};
 }
 
-std::vector<Ray> test_rays(int count) {
+std::vector<Ray> rays_through_noise(int count) {
     std::mt19937 random(11);
     std::uniform_real_distribution<double> unit(-1.0, 1.0);
     std::vector<Ray> rays;
@@ -47,10 +44,6 @@ std::vector<Ray> test_rays(int count) {
             {2.0 * glm::dvec3(unit(random), unit(random), unit(random)) - 20.0 * direction, direction});
     }
     return rays;
-}
-
-Interval across(const Ray& ray, const Field& field) {
-    return intersect(ray, field.texture_to_world()).value_or(Interval{});
 }
 
 TransferFunction smooth_function() {
@@ -79,7 +72,7 @@ TEST(ExactRays, XrayOfVoxelsIsExact) {
     const Medium mu = Medium::attenuation(0.4, 0.4);
     for (const Filter filter : all_filters) {
         const Field field = noise_field(filter);
-        for (const Ray& ray : test_rays(12)) {
+        for (const Ray& ray : rays_through_noise(12)) {
             const Interval interval = across(ray, field);
             if (interval.length() < 0.1) {
                 continue;
@@ -118,7 +111,7 @@ TEST(ExactRays, CompositeIsTheLimitOfItsSamples) {
         // Sums of |samples - exact| at a step and at a quarter of it.
         glm::dvec2 smooth_error(0.0);
         glm::dvec2 rough_error(0.0);
-        for (const Ray& ray : test_rays(6)) {
+        for (const Ray& ray : rays_through_noise(6)) {
             const Interval interval = across(ray, field);
             if (interval.length() < 0.1) {
                 continue;
@@ -151,7 +144,7 @@ TEST(ExactRays, ToleranceIsKept) {
         const Field field = noise_field(filter, 3);
         for (const TransferFunction& function : {smooth_function(), rough_function()}) {
             const Medium medium(function);
-            for (const Ray& ray : test_rays(20)) {
+            for (const Ray& ray : rays_through_noise(20)) {
                 const Interval interval = across(ray, field);
                 const auto at = [&](double tolerance) {
                     return composite(field, ray, interval, medium, {tolerance, 0.0}).rgba();
@@ -168,7 +161,7 @@ TEST(ExactRays, ToleranceIsKept) {
 TEST(ExactRays, ExtremesAndMeanAgainstDenseSampling) {
     for (const Filter filter : all_filters) {
         const Field field = noise_field(filter, 5);
-        for (const Ray& ray : test_rays(12)) {
+        for (const Ray& ray : rays_through_noise(12)) {
             const Interval interval = across(ray, field);
             if (interval.length() < 0.1) {
                 continue;
@@ -200,7 +193,7 @@ TEST(ExactRays, NoCrossingIsMissed) {
     for (const Filter filter : all_filters) {
         const Field field = noise_field(filter, 7);
         std::size_t total = 0;
-        for (const Ray& ray : test_rays(40)) {
+        for (const Ray& ray : rays_through_noise(40)) {
             const Interval interval = across(ray, field);
             if (interval.length() < 0.1) {
                 continue;
@@ -276,7 +269,7 @@ TEST(ExactRays, LengthsTimesAPowerOfTwoChangeNoBit) {
             TransferFunction stretched = function;
             stretched.reference_length_mm *= scale;
             const Medium scaled_medium(stretched);
-            for (const Ray& ray : test_rays(10)) {
+            for (const Ray& ray : rays_through_noise(10)) {
                 const Ray far{ray.origin_mm * scale, ray.direction};
                 const Interval a = across(ray, field);
                 const Interval b = across(far, scaled);
@@ -306,7 +299,7 @@ TEST(ExactRays, AMirroredVolumeInAMirroredBoxIsTheSame) {
     for (const Filter filter : all_filters) {
         const Field field = noise_field(filter);
         const Field mirrored(noise_dims, reversed, filter, field.texture_to_world() * flip);
-        for (const Ray& ray : test_rays(10)) {
+        for (const Ray& ray : rays_through_noise(10)) {
             const Interval interval = across(ray, field);
             EXPECT_LE(glm::length(composite(field, ray, interval, medium).rgba() -
                                   composite(mirrored, ray, interval, medium).rgba()),
@@ -356,7 +349,7 @@ TEST(Lattice, OpacityDoesNotDependOnTheStep) {
 TEST(Lattice, IsoShadeAndEarlyStop) {
     const Field field = noise_field(Filter::trilinear);
     const Medium medium(smooth_function());
-    const Ray ray = test_rays(1).front();
+    const Ray ray = rays_through_noise(1).front();
     const Interval interval = across(ray, field);
     const double all = composite_on_lattice(field, ray, interval, 0.05, medium).alpha();
     const double some = composite_on_lattice(field, ray, interval, 0.05, medium, {.iso = 0.5}).alpha();
@@ -376,7 +369,7 @@ TEST(Lattice, IsoShadeAndEarlyStop) {
 
 TEST(Lattice, FindsTheCrossingBetweenItsSamples) {
     const Field field = noise_field(Filter::catmull_rom);
-    for (const Ray& ray : test_rays(30)) {
+    for (const Ray& ray : rays_through_noise(30)) {
         const Interval interval = across(ray, field);
         if (interval.length() < 0.1) {
             continue;

@@ -17,9 +17,6 @@
 namespace viscera::reference {
 namespace {
 
-constexpr Filter all_filters[] = {Filter::nearest, Filter::trilinear, Filter::bspline,
-                                  Filter::bspline_prefiltered, Filter::catmull_rom};
-
 std::vector<double> noise(const glm::ivec3& dims, unsigned seed = 1) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> unit(0.0, 1.0);

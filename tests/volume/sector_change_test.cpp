@@ -27,10 +27,6 @@ VolumeShape shape_of(std::string_view name) {
     throw std::invalid_argument(std::string(name));
 }
 
-glm::ivec3 dims_of(const VolumeShape& shape) {
-    return shape.kind == VolumeKind::cylindrical ? glm::ivec3(20, 40, 24) : glm::ivec3(40, 25, 20);
-}
-
 Look look_at(const VolumeGrid& grid) {
     return {.eye_mm = sector_centre(grid) + glm::dvec3(110, -150, 80),
             .target_mm = sector_centre(grid),
@@ -55,7 +51,7 @@ std::vector<float> studs(const glm::ivec3& size) {
 TEST(SectorChanges, PartsOnEitherSideOfTheSeamShowAsInAVolumeMadeAnew) {
     for (const char* name : {"tube", "ring", "ball", "shell"}) {
         const VolumeShape shape = shape_of(name);
-        const glm::ivec3 n = dims_of(shape);
+        const glm::ivec3 n = small_dims(shape);
         const int ring = shape.wrap_axis();
         for (const char* filter : {"linear", "bspline_fp32"}) {
             SCOPED_TRACE(std::string(name) + ", " + filter);
@@ -99,7 +95,7 @@ TEST(SectorLongSlabs, AreFewerAndStayWithinTheTolerance) {
     for (const char* name : {"ring", "gap", "ball", "belt"}) {
         SCOPED_TRACE(name);
         const VolumeShape shape = shape_of(name);
-        const LiveVolume volume(sector_volume(shape, 2 * dims_of(shape), [](const glm::dvec3& p) {
+        const LiveVolume volume(sector_volume(shape, 2 * small_dims(shape), [](const glm::dvec3& p) {
             return std::clamp((26.0 - glm::length(p - glm::dvec3(-6, 4, 20))) / 3.0 + 0.5, 0.0, 1.0);
         }));
         const Look look = look_at(volume.volume().grid);
@@ -180,7 +176,7 @@ TEST(SectorLight, ItsGridIsThatOfABoxWithTheSameValues) {
     // Eight places a cell, each of the sample next to it: as a box has them whose voxels are those places.
     for (const NamedShape& named : some_shapes()) {
         SCOPED_TRACE(named.name);
-        const Volume volume = sector_noise(named.shape, dims_of(named.shape), 5);
+        const Volume volume = sector_noise(named.shape, small_dims(named.shape), 5);
         const VolumeGrid& sector = volume.grid;
         const auto extinction = [](double value) { return 0.02 * value; };
         const volume::ExtinctionGrid got = volume::extinction_in_box(
@@ -219,7 +215,7 @@ TEST(SectorLight, IsLookedUpWhereTheRayIs) {
     for (const char* name : {"ring", "gap", "ball", "bitten"}) {
         SCOPED_TRACE(name);
         const VolumeShape shape = shape_of(name);
-        const LiveVolume volume(sector_noise(shape, dims_of(shape), 3));
+        const LiveVolume volume(sector_noise(shape, small_dims(shape), 3));
         const VolumeGrid& sector = volume.volume().grid;
         const volume::LightVolumeParams how{.ambient_occlusion = 0.8, .resolution = 24};
         const json p{{"transfer_function",

@@ -17,10 +17,6 @@
 namespace viscera::test {
 namespace {
 
-glm::ivec3 dims_of(const VolumeShape& shape) {
-    return shape.kind == VolumeKind::cylindrical ? glm::ivec3(20, 40, 24) : glm::ivec3(40, 25, 20);
-}
-
 nlohmann::json glow() {
     return {{"points",
              {{{"value", 0}, {"colour", {0.9, 0.5, 0.3}}, {"opacity", 0.004}},
@@ -28,7 +24,7 @@ nlohmann::json glow() {
 }
 
 Volume waves(const VolumeShape& shape) {
-    return sector_volume(shape, dims_of(shape), [](const glm::dvec3& p) {
+    return sector_volume(shape, small_dims(shape), [](const glm::dvec3& p) {
         return 100.0 + 90.0 * std::sin(0.1 * p.x + 0.07 * p.z) * std::cos(0.12 * p.y);
     });
 }
@@ -65,7 +61,7 @@ TEST(SectorMesh, IsClosedFacesOutwardsAndEnclosesTheShapeClosely) {
     for (const NamedShape& named : some_shapes()) {
         SCOPED_TRACE(named.name);
         const volume::Space space =
-            volume::make_space({.dims = dims_of(named.shape), .shape = named.shape}, PlacementParams{});
+            volume::make_space({.dims = small_dims(named.shape), .shape = named.shape}, PlacementParams{});
         const MeshData mesh = volume::sector_mesh(space, space.coordinates(glm::dvec3(0.0), glm::dvec3(1.0)));
         // Volume of the shape in units of the outer radius.
         const VolumeShape& s = named.shape;

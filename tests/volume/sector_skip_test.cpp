@@ -13,13 +13,6 @@
 namespace viscera::test {
 namespace {
 
-nlohmann::json vessels_shown() {
-    return {{"points",
-             {{{"value", 60}, {"colour", {0.8, 0.2, 0.1}}, {"opacity", 0.0}},
-              {{"value", 130}, {"colour", {0.9, 0.6, 0.4}}, {"opacity", 0.2}},
-              {{"value", 200}, {"colour", {1.0, 1.0, 0.9}}, {"opacity", 0.5}}}}};
-}
-
 nlohmann::json parameters(std::string_view function, std::string_view scheme, std::string_view filter) {
     nlohmann::json p{{"function", function},
                      {"transfer_function", vessels_shown()},

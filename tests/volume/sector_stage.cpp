@@ -100,4 +100,8 @@ ShaderTexts chords_shown() {
                      "vec4 finish(State state) { return vec4(state.depth, state.colour.x, 0.0, 1.0); }\n")}};
 }
 
+glm::ivec3 small_dims(const VolumeShape& shape) {
+    return shape.kind == VolumeKind::cylindrical ? glm::ivec3(20, 40, 24) : glm::ivec3(40, 25, 20);
+}
+
 }  // namespace viscera::test

@@ -22,6 +22,8 @@ struct NamedShape {
 /// Volume of one f32 channel with samples value(frame) [mm] in a frame that is turned and moved.
 [[nodiscard]] Volume sector_volume(const VolumeShape& shape, const glm::ivec3& dims,
                                    const std::function<double(const glm::dvec3& frame)>& value);
+/// Voxels of a small one: few across the beams, more along them.
+[[nodiscard]] glm::ivec3 small_dims(const VolumeShape& shape);
 /// Winding bright tubes in the dark, 0 to 200, across seam and axis.
 [[nodiscard]] Volume sector_vessels(const VolumeShape& shape, const glm::ivec3& dims);
 /// Values in [0, 1), the same for one seed.

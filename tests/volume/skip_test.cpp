@@ -15,13 +15,6 @@ namespace viscera::test {
 namespace {
 
 /// Shows 100 and more.
-nlohmann::json vessels_shown() {
-    return {{"points",
-             {{{"value", 60}, {"colour", {0.8, 0.2, 0.1}}, {"opacity", 0.0}},
-              {{"value", 130}, {"colour", {0.9, 0.6, 0.4}}, {"opacity", 0.2}},
-              {{"value", 200}, {"colour", {1.0, 1.0, 0.9}}, {"opacity", 0.5}}}}};
-}
-
 /// Casts with and without skipping; the pictures' bits are compared.
 class Skipping : public testing::Test {
   protected:

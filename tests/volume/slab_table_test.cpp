@@ -11,13 +11,13 @@
 namespace viscera::volume {
 namespace {
 
-constexpr TexelRange unit{0.0, 1.0};
+constexpr TexelRange unit_range{0.0, 1.0};
 
-TransferPoint point(double value, double opacity, glm::dvec3 colour = {0.25, 0.5, 1.0}) {
+TransferPoint knot(double value, double opacity, glm::dvec3 colour = {0.25, 0.5, 1.0}) {
     return {value, colour, opacity};
 }
 
-TransferFunction function_of(std::vector<TransferPoint> points) {
+TransferFunction table_function(std::vector<TransferPoint> points) {
     TransferFunction function;
     function.points = std::move(points);
     function.reference_length_mm = 0.5;
@@ -26,19 +26,19 @@ TransferFunction function_of(std::vector<TransferPoint> points) {
 
 /// Teeth with upright sides, or with slanted ones.
 TransferFunction comb(int teeth, double opacity, bool slanted) {
-    std::vector<TransferPoint> points{point(0.0, 0.0)};
+    std::vector<TransferPoint> points{knot(0.0, 0.0)};
     for (int i = 0; i < teeth; ++i) {
         const double start = (i + 0.3) / teeth;
         const double width = 0.4 / teeth;
         const double side = slanted ? 0.1 / teeth : 0.0;
         const glm::dvec3 colour(i % 2, 0.5, (i % 3) / 2.0);
-        points.push_back(point(start, 0.0, colour));
-        points.push_back(point(start + side, opacity, colour));
-        points.push_back(point(start + width - side, opacity, 1.0 - colour));
-        points.push_back(point(start + width, 0.0, 1.0 - colour));
+        points.push_back(knot(start, 0.0, colour));
+        points.push_back(knot(start + side, opacity, colour));
+        points.push_back(knot(start + width - side, opacity, 1.0 - colour));
+        points.push_back(knot(start + width, 0.0, 1.0 - colour));
     }
-    points.push_back(point(1.0, 0.0));
-    return function_of(points);
+    points.push_back(knot(1.0, 0.0));
+    return table_function(points);
 }
 
 struct NamedFunction {
@@ -47,16 +47,16 @@ struct NamedFunction {
 };
 
 std::vector<NamedFunction> functions() {
-    return {{"ramp", function_of({point(0.0, 0.0, {1.0, 0.0, 0.3}), point(1.0, 0.95, {0.0, 1.0, 0.6})})},
-            {"fall to nothing", function_of({point(0.1, 0.999), point(0.8, 0.0)})},
-            {"step", function_of({point(0.4, 0.1), point(0.4, 0.8), point(0.7, 0.8), point(0.7, 0.0)})},
+    return {{"ramp", table_function({knot(0.0, 0.0, {1.0, 0.0, 0.3}), knot(1.0, 0.95, {0.0, 1.0, 0.6})})},
+            {"fall to nothing", table_function({knot(0.1, 0.999), knot(0.8, 0.0)})},
+            {"step", table_function({knot(0.4, 0.1), knot(0.4, 0.8), knot(0.7, 0.8), knot(0.7, 0.0)})},
             {"comb", comb(20, 0.9, false)},
             {"slanted comb", comb(20, 0.97, true)},
             {"fine comb", comb(300, 0.5, false)},
-            {"thin", function_of({point(0.0, 0.0), point(0.5, 1e-7), point(1.0, 3e-7)})},
-            {"needle", function_of({point(0.61, 0.0), point(0.610001, 0.7), point(0.610002, 0.0)})},
-            {"opaque", function_of({point(0.2, 0.0), point(0.6, 1.0), point(1.0, 1.0)})},
-            {"constant", function_of({point(0.5, 0.3)})}};
+            {"thin", table_function({knot(0.0, 0.0), knot(0.5, 1e-7), knot(1.0, 3e-7)})},
+            {"needle", table_function({knot(0.61, 0.0), knot(0.610001, 0.7), knot(0.610002, 0.0)})},
+            {"opaque", table_function({knot(0.2, 0.0), knot(0.6, 1.0), knot(1.0, 1.0)})},
+            {"constant", table_function({knot(0.5, 0.3)})}};
 }
 
 /// Extinction * (red, green, blue, 1).
@@ -129,8 +129,8 @@ TEST(SlabTable, MeansAreWithinAHundredThousandthOfTheLargestExtinction) {
     std::uniform_real_distribution<double> place(0.0, 1.0);
     std::uniform_real_distribution<double> decades(-8.0, 0.0);
     for (const NamedFunction& f : functions()) {
-        const ExtinctionKnots knots = extinction_knots(f.function, {}, unit);
-        const SlabTable table = tabulate_slabs(knots, unit);
+        const ExtinctionKnots knots = extinction_knots(f.function, {}, unit_range);
+        const SlabTable table = tabulate_slabs(knots, unit_range);
         const double largest = knots.most_extinction();
         double worst = 0.0;
         for (int i = 0; i < 1500; ++i) {
@@ -139,7 +139,7 @@ TEST(SlabTable, MeansAreWithinAHundredThousandthOfTheLargestExtinction) {
             const double distance = i % 10 == 0 ? 0.0 : std::pow(10.0, decades(random));
             const auto b = static_cast<float>(std::min(1.0, static_cast<double>(a) + distance));
             const glm::dvec4 expected =
-                reference_mean(knots, unit, static_cast<double>(a), static_cast<double>(b));
+                reference_mean(knots, unit_range, static_cast<double>(a), static_cast<double>(b));
             worst = std::max(worst, largest_miss(table.mean(a, b), expected));
             EXPECT_EQ(table.mean(a, b), table.mean(b, a));
         }
@@ -150,8 +150,8 @@ TEST(SlabTable, MeansAreWithinAHundredThousandthOfTheLargestExtinction) {
 
 TEST(SlabTable, MeansAroundEveryKnot) {
     for (const NamedFunction& f : functions()) {
-        const ExtinctionKnots knots = extinction_knots(f.function, {}, unit);
-        const SlabTable table = tabulate_slabs(knots, unit);
+        const ExtinctionKnots knots = extinction_knots(f.function, {}, unit_range);
+        const SlabTable table = tabulate_slabs(knots, unit_range);
         const double largest = knots.most_extinction();
         for (const ExtinctionKnots::Knot& knot : knots.knots) {
             const float before = std::nextafter(knot.texel, 0.0F);
@@ -162,7 +162,7 @@ TEST(SlabTable, MeansAroundEveryKnot) {
                 const auto from = std::max(0.0, static_cast<double>(a));
                 const auto to = std::min(1.0, static_cast<double>(b));
                 EXPECT_LE(largest_miss(table.mean(static_cast<float>(from), static_cast<float>(to)),
-                                       reference_mean(knots, unit, from, to)),
+                                       reference_mean(knots, unit_range, from, to)),
                           1e-5 * largest)
                     << f.name << " " << from << " " << to;
             }
@@ -178,9 +178,9 @@ long double closed_form(long double y0, long double y1, long double width) {
 
 TEST(SlabTable, ExtinctionOfARampIsTheClosedForm) {
     for (const double most : {0.5, 0.99, 1.0}) {
-        const TransferFunction f = function_of({point(0.0, 0.0), point(1.0, most)});
-        const ExtinctionKnots knots = extinction_knots(f, {}, unit);
-        const SlabTable table = tabulate_slabs(knots, unit);
+        const TransferFunction f = table_function({knot(0.0, 0.0), knot(1.0, most)});
+        const ExtinctionKnots knots = extinction_knots(f, {}, unit_range);
+        const SlabTable table = tabulate_slabs(knots, unit_range);
         for (int i = 0; i < 32; ++i) {
             for (int k = i + 1; k <= 32; ++k) {
                 const float a = static_cast<float>(i) / 32.0F;
@@ -202,8 +202,8 @@ TEST(SlabTable, MeansAreThoseOfTheFunctionInItsOwnValues) {
     for (TransferPoint& p : in_hu.points) {
         p.value = p.value * 4095.0 - 1024.0;
     }
-    const ExtinctionKnots knots = extinction_knots(in_hu, {4095.0, -1024.0}, unit);
-    const SlabTable table = tabulate_slabs(knots, unit);
+    const ExtinctionKnots knots = extinction_knots(in_hu, {4095.0, -1024.0}, unit_range);
+    const SlabTable table = tabulate_slabs(knots, unit_range);
     const double sigma = extinction(0.9, 0.5);
     for (int i = 0; i <= 19; ++i) {
         // Half a tooth, one whole, and all to the right.
@@ -218,8 +218,8 @@ TEST(SlabTable, MeansAreThoseOfTheFunctionInItsOwnValues) {
 
 TEST(SlabTable, NothingIsNegativeAndNothingEmptyIsSeen) {
     for (const NamedFunction& f : functions()) {
-        const ExtinctionKnots knots = extinction_knots(f.function, {}, unit);
-        const SlabTable table = tabulate_slabs(knots, unit);
+        const ExtinctionKnots knots = extinction_knots(f.function, {}, unit_range);
+        const SlabTable table = tabulate_slabs(knots, unit_range);
         for (int i = 0; i <= 4000; ++i) {
             const float a = static_cast<float>(i) / 4000.0F;
             for (const float b : {a, a + 1e-6F, a + 3e-3F}) {
@@ -230,14 +230,15 @@ TEST(SlabTable, NothingIsNegativeAndNothingEmptyIsSeen) {
             }
         }
     }
-    const SlabTable table = tabulate_slabs(extinction_knots(comb(20, 0.9, false), {}, unit), unit);
+    const SlabTable table =
+        tabulate_slabs(extinction_knots(comb(20, 0.9, false), {}, unit_range), unit_range);
     EXPECT_EQ(table.mean(0.001F, 0.012F), glm::vec4(0.0F)) << "between teeth nothing at all";
     EXPECT_EQ(table.mean(0.0F, 0.0F), glm::vec4(0.0F));
 }
 
 TEST(SlabTable, IsConstantBeyondTheRange) {
-    const TransferFunction f = function_of({point(0.0, 0.2), point(1.0, 0.6)});
-    const SlabTable table = tabulate_slabs(extinction_knots(f, {}, unit), unit);
+    const TransferFunction f = table_function({knot(0.0, 0.2), knot(1.0, 0.6)});
+    const SlabTable table = tabulate_slabs(extinction_knots(f, {}, unit_range), unit_range);
     const auto low = static_cast<float>(extinction(0.2, 0.5));
     const auto high = static_cast<float>(extinction(0.6, 0.5));
     EXPECT_FLOAT_EQ(table.mean(-0.5F, -0.25F).w, low);
@@ -278,7 +279,7 @@ TEST(SlabTable, OtherRanges) {
 
 TEST(SlabTable, StaysSmall) {
     for (const NamedFunction& f : functions()) {
-        const SlabTable table = tabulate_slabs(extinction_knots(f.function, {}, unit), unit);
+        const SlabTable table = tabulate_slabs(extinction_knots(f.function, {}, unit_range), unit_range);
         RecordProperty(f.name, table.pieces);
         EXPECT_LE(table.pieces, most_slab_pieces) << f.name;
         EXPECT_EQ(table.texels.size(), static_cast<std::size_t>(SlabTable::rows * table.pieces));
@@ -295,8 +296,8 @@ TEST(SlabTable, StaysSmall) {
                        std::to_string(searched / static_cast<double>(slab_bins)));
     }
     // What does not fit comes out coarser, but comes out.
-    const ExtinctionKnots knots = extinction_knots(comb(1000, 0.9, true), {}, unit);
-    const SlabTable coarse = tabulate_slabs(knots, unit, 64, 300);
+    const ExtinctionKnots knots = extinction_knots(comb(1000, 0.9, true), {}, unit_range);
+    const SlabTable coarse = tabulate_slabs(knots, unit_range, 64, 300);
     EXPECT_LE(coarse.pieces, 300);
     for (int i = 0; i <= 1000; ++i) {
         const float a = static_cast<float>(i) / 1000.0F;

@@ -13,13 +13,13 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int width = 72;
-constexpr int height = 56;
+constexpr int slice_width = 72;
+constexpr int slice_height = 56;
 
 json slice_scene(json parameters, const json& camera = {}) {
     parameters["volume"]["host"] = "host";
     json scene{{"version", 1},
-               {"resolution", {width, height}},
+               {"resolution", {slice_width, slice_height}},
                {"passes", {{{"name", "slice"}, {"effect", "volume.slice"}, {"parameters", parameters}}}},
                {"targets", {{"volume.slice", {{"format", "rgba32f"}}}}},
                {"outputs", {"volume.slice"}}};
@@ -35,7 +35,7 @@ Image slice(Stage& stage, const LiveVolume& volume, const json& parameters, cons
 }
 
 /// Grey from 0 to 1 over [0, 1].
-json grey() {
+json grey_levels() {
     return {{"window", {{"width", 1}, {"level", 0.5}}}};
 }
 
@@ -57,8 +57,8 @@ struct Sheet {
     double height_mm;
 
     [[nodiscard]] glm::dvec3 at(int x, int y) const {
-        const double mm = height_mm / height;
-        return centre + (x + 0.5 - 0.5 * width) * mm * right + (y + 0.5 - 0.5 * height) * mm * up;
+        const double mm = height_mm / slice_height;
+        return centre + (x + 0.5 - 0.5 * slice_width) * mm * right + (y + 0.5 - 0.5 * slice_height) * mm * up;
     }
 };
 
@@ -72,8 +72,8 @@ Place place_of(const glm::dvec3& t) {
 
 void expect_field(const Image& image, const reference::Field& field, const Sheet& sheet, double tolerance) {
     int inside = 0;
-    for (int y = 0; y < height; ++y) {
-        for (int x = 0; x < width; ++x) {
+    for (int y = 0; y < slice_height; ++y) {
+        for (int x = 0; x < slice_width; ++x) {
             const glm::dvec3 t = field.world_to_texture() * glm::dvec4(sheet.at(x, y), 1.0);
             const Place place = place_of(t);
             if (place == Place::outside) {
@@ -86,7 +86,7 @@ void expect_field(const Image& image, const reference::Field& field, const Sheet
         }
     }
     EXPECT_GT(inside, 500);
-    EXPECT_LT(inside, width * height);
+    EXPECT_LT(inside, slice_width * slice_height);
 }
 
 class Slice : public testing::Test {
@@ -105,7 +105,7 @@ TEST_F(Slice, values_are_those_of_the_field) {
     const json oblique = {{"point_mm", {12, -18, 28}}, {"normal", {0.6, -1.6, 1.0}}, {"up", {0.1, 0.2, 1.0}}};
     for (const auto& storage : {"texture_3d", "atlas"}) {
         const Image image = slice(stage_, live,
-                                  {{"transfer_function", grey()},
+                                  {{"transfer_function", grey_levels()},
                                    {"plane", {{"oblique", oblique}}},
                                    {"volume", {{"storage", storage}}},
                                    {"height_mm", 60},
@@ -121,7 +121,7 @@ TEST_F(Slice, every_filter_is_the_field_s) {
     const Sheet sheet{{10.0, -20.0, 25.0}, {1, 0, 0}, {0, -1, 0}, 48.0};
     const auto check = [&](const json& sampling, reference::Filter filter, double tolerance) {
         const Image image = slice(stage_, live,
-                                  {{"transfer_function", grey()},
+                                  {{"transfer_function", grey_levels()},
                                    {"plane", {{"position_mm", 25}}},
                                    {"height_mm", 48},
                                    {"background", {0, 0, 0.25, 1}},
@@ -141,20 +141,20 @@ TEST_F(Slice, pictures_lie_as_radiologists_look_at_them) {
         return glm::length(p - spot) < 5.0 ? 1.0 : 0.1;
     }));
     const auto brightest = [&](const char* axis, double position) {
-        const Image image =
-            slice(stage_, live,
-                  {{"transfer_function", grey()}, {"plane", {{"axis", axis}, {"position_mm", position}}}});
+        const Image image = slice(
+            stage_, live,
+            {{"transfer_function", grey_levels()}, {"plane", {{"axis", axis}, {"position_mm", position}}}});
         glm::dvec2 sum(0.0);
         double count = 0.0;
-        for (int y = 0; y < height; ++y) {
-            for (int x = 0; x < width; ++x) {
+        for (int y = 0; y < slice_height; ++y) {
+            for (int x = 0; x < slice_width; ++x) {
                 if (image.at(x, y, 0) > 0.8F) {
-                    sum += glm::dvec2(x + 0.5 - 0.5 * width, y + 0.5 - 0.5 * height);
+                    sum += glm::dvec2(x + 0.5 - 0.5 * slice_width, y + 0.5 - 0.5 * slice_height);
                     count += 1.0;
                 }
             }
         }
-        return sum / count * (40.0 / height);  // [mm], as the volume fits the height
+        return sum / count * (40.0 / slice_height);  // [mm], as the volume fits the height
     };
     const auto expect_at = [](const glm::dvec2& got, const glm::dvec2& wanted) {
         EXPECT_NEAR(got.x, wanted.x, 0.5);
@@ -170,10 +170,11 @@ TEST_F(Slice, oblique_planes_have_up_up_and_are_seen_from_their_normal) {
         float_volume({20, 20, 20}, glm::dvec3(2.0), [](const glm::dvec3& p) { return 0.5 + 0.01 * p.x; }));
     // From the head: left and right change places beside the axial picture.
     const Image image = slice(stage_, live,
-                              {{"transfer_function", grey()},
+                              {{"transfer_function", grey_levels()},
                                {"height_mm", 40},
                                {"plane", {{"oblique", {{"normal", {0, 0, 1}}, {"up", {0, -1, 0}}}}}}});
-    EXPECT_GT(image.at(width / 2 - 12, height / 2, 0), image.at(width / 2 + 12, height / 2, 0) + 0.1F);
+    EXPECT_GT(image.at(slice_width / 2 - 12, slice_height / 2, 0),
+              image.at(slice_width / 2 + 12, slice_height / 2, 0) + 0.1F);
 }
 
 TEST_F(Slice, thick_slabs_take_mean_and_extremes_across_them) {
@@ -182,15 +183,15 @@ TEST_F(Slice, thick_slabs_take_mean_and_extremes_across_them) {
     const LiveVolume live(float_volume({32, 32, 41}, {2.0, 2.0, 1.0}, law));
     const auto value = [&](const char* function, double thickness, double position) {
         return slice(stage_, live,
-                     {{"transfer_function", grey()},
+                     {{"transfer_function", grey_levels()},
                       {"height_mm", 40},
                       {"sampling", {{"filter", "linear_fp32"}}},
                       {"slab", {{"thickness_mm", thickness}, {"function", function}}},
                       {"plane", {{"position_mm", position}}}});
     };
     const auto at_middle = [](const Image& image) {
-        return 0.5 * (static_cast<double>(image.at(width / 2, height / 2, 0)) +
-                      static_cast<double>(image.at(width / 2 - 1, height / 2, 0)));
+        return 0.5 * (static_cast<double>(image.at(slice_width / 2, slice_height / 2, 0)) +
+                      static_cast<double>(image.at(slice_width / 2 - 1, slice_height / 2, 0)));
     };
     // Mean of z^2 over [3, 13]: (13^3 - 3^3) / 30; the chords of cells of 1 mm add 1/6, midpoints of half
     // cells take nothing from straight pieces.
@@ -218,11 +219,11 @@ TEST_F(Slice, a_narrow_window_has_all_its_greys) {
                                {"height_mm", 32},
                                {"sampling", {{"filter", "linear_fp32"}}}});
     const reference::Field field(live.volume(), reference::Filter::trilinear);
-    for (int x = 0; x < width; ++x) {
-        const glm::dvec3 t =
-            field.world_to_texture() * glm::dvec4((x + 0.5 - 0.5 * width) * 32.0 / height, 0.3, 0.0, 1.0);
+    for (int x = 0; x < slice_width; ++x) {
+        const glm::dvec3 t = field.world_to_texture() *
+                             glm::dvec4((x + 0.5 - 0.5 * slice_width) * 32.0 / slice_height, 0.3, 0.0, 1.0);
         if (place_of(t) == Place::inside) {
-            ASSERT_NEAR(image.at(x, height / 2, 0), std::clamp((field.value(t) - 0.0) / 80.0, 0.0, 1.0),
+            ASSERT_NEAR(image.at(x, slice_height / 2, 0), std::clamp((field.value(t) - 0.0) / 80.0, 0.0, 1.0),
                         5e-6);
         }
     }
@@ -232,9 +233,9 @@ TEST_F(Slice, a_narrow_window_has_all_its_greys) {
 void expect_plane(const Image& colour, const Image& depth, const View& view, const reference::Field& field,
                   const std::function<double(const PixelRay&)>& along) {
     int seen = 0;
-    for (int y = 0; y < height; ++y) {
-        for (int x = 0; x < width; ++x) {
-            const PixelRay ray = pixel_ray(view, x, y, width, height);
+    for (int y = 0; y < slice_height; ++y) {
+        for (int x = 0; x < slice_width; ++x) {
+            const PixelRay ray = pixel_ray(view, x, y, slice_width, slice_height);
             const double s = along(ray);
             const glm::dvec3 p = ray.origin + s * ray.direction;
             const glm::dvec3 t = field.world_to_texture() * glm::dvec4(p, 1.0);
@@ -261,7 +262,7 @@ TEST_F(Slice, a_plane_stands_in_the_scene) {
     const LiveVolume live(volume);
     const reference::Field field(volume, reference::Filter::trilinear);
     json parameters = {{"view", "camera"},
-                       {"transfer_function", grey()},
+                       {"transfer_function", grey_levels()},
                        {"sampling", {{"filter", "linear_fp32"}}},
                        {"plane", {{"oblique", {{"point_mm", {11, -19, 31}}, {"normal", {0.4, -1, 0.3}}}}}}};
     const glm::dvec3 n(0.4, -1.0, 0.3);
@@ -290,15 +291,15 @@ TEST_F(Slice, a_mesh_shows_the_values_where_it_cuts) {
     camera["vertical_fov_deg"] = 26;
     const json parameters = {{"view", "camera"},
                              {"mesh", file.string()},
-                             {"transfer_function", grey()},
+                             {"transfer_function", grey_levels()},
                              {"sampling", {{"filter", "linear_fp32"}}}};
     const Image colour = slice(stage_, live, parameters, camera);
     const View view = stage_.renderer().still(0.0).eye();
     int seen = 0;
     int cut_off = 0;
-    for (int y = 0; y < height; ++y) {
-        for (int x = 0; x < width; ++x) {
-            const PixelRay ray = pixel_ray(view, x, y, width, height);
+    for (int y = 0; y < slice_height; ++y) {
+        for (int x = 0; x < slice_width; ++x) {
+            const PixelRay ray = pixel_ray(view, x, y, slice_width, slice_height);
             double nearest = 1e300;
             bool sure = true;
             for (const double s : crossings(ray, ball)) {
@@ -333,15 +334,15 @@ TEST_F(Slice, rays_of_the_volume_end_at_it) {
                         {"transfer_function", {{"points", {{{"value", 0}, {"colour", {0, 0, 1}}}}}}},
                         {"plane", {{"axis", "coronal"}, {"position_mm", 5}}}}}}}),
         {{"transfer_function", {{"points", {{{"value", 0}, {"colour", {1, 0, 0}}, {"opacity", 0.02}}}}}}},
-        camera, width, height);
+        camera, slice_width, slice_height);
     scene["passes"][1]["targets"] = {{"depth", "volume.slice_depth"}, {"background", "volume.slice"}};
     scene["targets"]["volume.slice"] = {{"format", "rgba32f"}};
     const Image image = mixed_shot(stage_, scene, live);
     const View view = stage_.renderer().still(0.0).eye();
     int seen = 0;
-    for (int y = 0; y < height; ++y) {
-        for (int x = 0; x < width; ++x) {
-            const PixelRay ray = pixel_ray(view, x, y, width, height);
+    for (int y = 0; y < slice_height; ++y) {
+        for (int x = 0; x < slice_width; ++x) {
+            const PixelRay ray = pixel_ray(view, x, y, slice_width, slice_height);
             const glm::dvec2 box = box_interval(ray, glm::dvec3(-40.0), glm::dvec3(40.0));
             const double s = (5.0 - ray.origin.y) / ray.direction.y;
             const glm::dvec3 p = glm::abs(ray.origin + s * ray.direction);
@@ -361,8 +362,8 @@ TEST_F(Slice, rays_of_the_volume_end_at_it) {
 TEST_F(Slice, degenerate_planes_and_volumes_are_refused_or_harmless) {
     const LiveVolume live(float_volume({1, 1, 1}, glm::dvec3(2.0), [](const glm::dvec3&) { return 3.0; }));
     const Image image = slice(stage_, live, {{"transfer_function", json::object()}});
-    EXPECT_TRUE(std::isfinite(image.at(width / 2, height / 2, 0)));
-    EXPECT_EQ(image.at(width / 2, height / 2, 3), 1.0F);
+    EXPECT_TRUE(std::isfinite(image.at(slice_width / 2, slice_height / 2, 0)));
+    EXPECT_EQ(image.at(slice_width / 2, slice_height / 2, 3), 1.0F);
     const auto refused = [&](const json& parameters) {
         EXPECT_THROW(stage_.load(slice_scene(parameters)), Error) << parameters;
     };

@@ -4,13 +4,13 @@
 
 #include "tests/volume/mixed_scene.h"
 
-// A given depth behind where rays start, in a homogeneous volume: opacity is 1 - exp(-sigma length).
+// A given depth behind where rays start, in a homogeneous volume: opacity is 1 - exp(-box_sigma length).
 namespace viscera::test {
 namespace {
 
 using nlohmann::json;
 
-constexpr double sigma = 0.02;
+constexpr double box_sigma = 0.02;
 constexpr double depth_mm = 17.0;
 constexpr double half_mm = 40.0;
 
@@ -19,9 +19,10 @@ class SubVolume : public testing::Test {
     void TearDown() override { EXPECT_TRUE(stage_.complaints().empty()) << stage_.complaints().front(); }
 
     static json parameters(double depth = depth_mm) {
-        return {{"transfer_function", {{"points", {{{"value", 0}, {"opacity", 1.0 - std::exp(-sigma)}}}}}},
-                {"sampling", {{"termination", 0}}},
-                {"sub_volume", {{"depth_mm", depth}}}};
+        return {
+            {"transfer_function", {{"points", {{{"value", 0}, {"opacity", 1.0 - std::exp(-box_sigma)}}}}}},
+            {"sampling", {{"termination", 0}}},
+            {"sub_volume", {{"depth_mm", depth}}}};
     }
     /// start(ray): where rays begin and end without the depth; pixels with less than 1 mm are left out.
     template <class Stretch>
@@ -38,7 +39,7 @@ class SubVolume : public testing::Test {
                 const double length = std::clamp(s.y - s.x, 0.0, depth);
                 cut += s.y - s.x > depth ? 1 : 0;
                 whole += s.y - s.x > 0.0 && s.y - s.x < depth ? 1 : 0;
-                ASSERT_NEAR(image.at(x, y, 3), 1.0 - std::exp(-sigma * length), 1e-5) << x << ", " << y;
+                ASSERT_NEAR(image.at(x, y, 3), 1.0 - std::exp(-box_sigma * length), 1e-5) << x << ", " << y;
             }
         }
         EXPECT_GT(cut, 200);

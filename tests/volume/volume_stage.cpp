@@ -272,4 +272,11 @@ double order_of(std::span<const double> n, std::span<const double> error) {
     return (count * sxy - sx * sy) / (count * sxx - sx * sx);
 }
 
+nlohmann::json vessels_shown() {
+    return {{"points",
+             {{{"value", 60}, {"colour", {0.8, 0.2, 0.1}}, {"opacity", 0.0}},
+              {{"value", 130}, {"colour", {0.9, 0.6, 0.4}}, {"opacity", 0.2}},
+              {{"value", 200}, {"colour", {1.0, 1.0, 0.9}}, {"opacity", 0.5}}}}};
+}
+
 }  // namespace viscera::test

@@ -108,4 +108,7 @@ using WantedColour = std::function<std::optional<glm::dvec4>(const reference::Ra
 /// Slope of log(error) over -log(n), by least squares.
 [[nodiscard]] double order_of(std::span<const double> n, std::span<const double> error);
 
+/// A transfer function that shows the brighter parts of volumes of vessels, 0 to 200, and nothing below 60.
+[[nodiscard]] nlohmann::json vessels_shown();
+
 }  // namespace viscera::test

@@ -13,8 +13,8 @@
 namespace viscera::test {
 namespace {
 
-constexpr int voxels = 64;
-constexpr double attenuation = 0.02;  // of value 0 (water) [1/mm]
+constexpr int xray_voxels = 64;
+constexpr double water_attenuation = 0.02;  // of value 0 (water) [1/mm]
 
 /// Counts samples into red; green is the length of the path [mm].
 ShaderTexts counting() {
@@ -36,22 +36,22 @@ ShaderTexts counting() {
                  "vec4 finish(State state) { return vec4(float(samples_taken), path_mm, 0.0, 1.0); }\n")}};
 }
 
-nlohmann::json parameters() {
+nlohmann::json xray_parameters() {
     return {{"function", "xray"},
-            {"xray", {{"negative", false}, {"water_attenuation_per_mm", attenuation}}},
+            {"xray", {{"negative", false}, {"water_attenuation_per_mm", water_attenuation}}},
             {"sampling", {{"scheme", "cell"}, {"filter", "linear_fp32"}, {"termination", 0}}}};
 }
 
 /// White noise from 0 to 1000 HU.
 Volume noise() {
-    Volume volume = noise_volume(glm::ivec3(voxels), glm::dvec3(1.0), 11);
+    Volume volume = noise_volume(glm::ivec3(xray_voxels), glm::dvec3(1.0), 11);
     volume.slope = 1000.0;
     return volume;
 }
 
-const std::array looks{Look{.eye_mm = {90, -170, 60}, .fov_deg = 40},
-                       Look{.eye_mm = {-120, -90, 140}, .orthographic_mm = 110},
-                       Look{.eye_mm = {30, 12, -25}, .target_mm = {-30, -5, 20}, .fov_deg = 70}};
+const std::array xray_looks{Look{.eye_mm = {90, -170, 60}, .fov_deg = 40},
+                            Look{.eye_mm = {-120, -90, 140}, .orthographic_mm = 110},
+                            Look{.eye_mm = {30, 12, -25}, .target_mm = {-30, -5, 20}, .fov_deg = 70}};
 
 /// The optical depth itself: through the driver's exp, which is good to some 1e-6, and a logarithm it could
 /// not be seen.
@@ -65,10 +65,10 @@ ShaderTexts bare() {
 TEST(XrayExact, WhiteNoiseIsTheExactTrilinearIntegral) {
     const LiveVolume volume(noise());
     const reference::Field field(volume.volume(), reference::Filter::trilinear);
-    const reference::Medium medium = reference::ct_attenuation(attenuation);
+    const reference::Medium medium = reference::ct_attenuation(water_attenuation);
     VolumeStage stage(bare());
-    for (const Look& look : looks) {
-        const Shot shot = stage.cast(volume, parameters(), look, glm::ivec2(48));
+    for (const Look& look : xray_looks) {
+        const Shot shot = stage.cast(volume, xray_parameters(), look, glm::ivec2(48));
         double of_depth = 0.0;
         double of_box = 0.0;
         double of_intensity = 0.0;
@@ -85,8 +85,8 @@ TEST(XrayExact, WhiteNoiseIsTheExactTrilinearIntegral) {
                 const double error = std::abs(shot.at(x, y).x - depth);
                 // A ray's place is known to some 2^-22 of the box: what cuts off a corner errs by that, not
                 // by a share of its own short path.
-                of_box = std::max(of_box, error / (attenuation * 1.5 * voxels));
-                if (interval->length() >= 0.5 * voxels) {
+                of_box = std::max(of_box, error / (water_attenuation * 1.5 * xray_voxels));
+                if (interval->length() >= 0.5 * xray_voxels) {
                     of_depth = std::max(of_depth, error / depth);
                     of_intensity = std::max(of_intensity, std::abs(shot.at(x, y).y - std::exp(-depth)));
                     ++seen;
@@ -107,13 +107,13 @@ TEST(XrayExact, WhiteNoiseIsTheExactTrilinearIntegral) {
 TEST(XrayExact, AFilmShowsTheLineIntegralOverItsRange) {
     const LiveVolume volume(noise());
     VolumeStage stage(bare());
-    nlohmann::json p = parameters();
+    nlohmann::json p = xray_parameters();
     for (const bool negative : {false, true}) {
         for (const auto& [from, to] : {std::pair(0.0, 3.0), std::pair(1.2, 2.2)}) {
             p["xray"]["film"] = {{"from", from}, {"to", to}};
             p["xray"]["negative"] = negative;
             p["xray"]["incident"] = 2.0;
-            const Shot shot = stage.cast(volume, p, looks[0], glm::ivec2(48));
+            const Shot shot = stage.cast(volume, p, xray_looks[0], glm::ivec2(48));
             int between = 0;
             for (int y = 0; y < shot.image.height; ++y) {
                 for (int x = 0; x < shot.image.width; ++x) {
@@ -130,7 +130,7 @@ TEST(XrayExact, AFilmShowsTheLineIntegralOverItsRange) {
     }
     EXPECT_EQ(stage.stage().complaints(), std::vector<std::string>{});
     p["xray"]["film"] = {{"from", 2.0}, {"to", 2.0}};
-    const auto error = error_of([&] { (void)stage.cast(volume, p, looks[0], glm::ivec2(4)); });
+    const auto error = error_of([&] { (void)stage.cast(volume, p, xray_looks[0], glm::ivec2(4)); });
     ASSERT_TRUE(error);
     EXPECT_NE(std::string(error->what()).find("/xray/film"), std::string::npos) << error->what();
 }
@@ -138,8 +138,8 @@ TEST(XrayExact, AFilmShowsTheLineIntegralOverItsRange) {
 TEST(XrayExact, TakesAtMostFourSamplesPerVoxelOfPath) {
     const LiveVolume volume(noise());
     VolumeStage stage(counting());
-    for (const Look& look : looks) {
-        const Shot shot = stage.cast(volume, parameters(), look, glm::ivec2(48));
+    for (const Look& look : xray_looks) {
+        const Shot shot = stage.cast(volume, xray_parameters(), look, glm::ivec2(48));
         double samples = 0.0;
         double path = 0.0;
         double worst = 0.0;

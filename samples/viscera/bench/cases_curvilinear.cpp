@@ -11,7 +11,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 struct Probe {
     const char* name;
@@ -137,12 +137,12 @@ Image colours(Image picture) {
     return picture;
 }
 
-struct Shot {
+struct CurvilinearShot {
     Samples time;
     Image picture;
 };
 
-Shot shoot(Lab& lab, const LiveVolume& volume, const json& scene, int repeats) {
+CurvilinearShot shoot(Lab& lab, const LiveVolume& volume, const json& scene, int repeats) {
     const HostVolume given{"probe", &volume};
     Stage stage(lab, scene, {.by_pass = false, .repeats = repeats});
     stage.run([&](Frame& frame) {
@@ -168,11 +168,11 @@ void run_curvilinear(Lab& lab) {
         for (int a = 0; a < 3; ++a) {
             fine.dims[a] = a == grid.shape.wrap_axis() ? 3 * grid.dims[a] : 3 * (grid.dims[a] - 1) + 1;
         }
-        const Shot exact =
+        const CurvilinearShot exact =
             shoot(lab, LiveVolume(filled(fine, at)), scene_of(lab, xray("linear_fp32", 0.5), scale), 1);
         const std::string name = probe.name;
-        const Shot plain = shoot(lab, box, scene_of(lab, xray("linear", 0.5), scale), 0);
-        const auto row = [&](const std::string& what, const Shot& shot) {
+        const CurvilinearShot plain = shoot(lab, box, scene_of(lab, xray("linear", 0.5), scale), 0);
+        const auto row = [&](const std::string& what, const CurvilinearShot& shot) {
             const CompareResult off = compare(shot.picture, exact.picture, {});
             lab.add({.group = "curvilinear",
                      .name = name + ", " + what,
@@ -188,8 +188,8 @@ void run_curvilinear(Lab& lab) {
             row(std::string("direct, ") + filter,
                 shoot(lab, direct, scene_of(lab, xray(filter, 0.5), scale), 0));
         }
-        const Shot whole = shoot(lab, direct, scene_of(lab, wall_shown(false), scale), 0);
-        const Shot skipped = shoot(lab, direct, scene_of(lab, wall_shown(true), scale), 0);
+        const CurvilinearShot whole = shoot(lab, direct, scene_of(lab, wall_shown(false), scale), 0);
+        const CurvilinearShot skipped = shoot(lab, direct, scene_of(lab, wall_shown(true), scale), 0);
         lab.add({.group = "curvilinear",
                  .name = name + ", wall, skipped in",
                  .samples = skipped.time,

@@ -14,7 +14,8 @@ json sampling(const char* scheme, double step, bool skip) {
             {"tolerance", 0.0}, {"filter", "linear"}, {"gradient", "central"}};
 }
 
-Row quality_row(std::string group, const Variant& variant, const Quality& quality, const Samples& samples) {
+Row quality_row(std::string group, const Variant& variant, const PictureQuality& quality,
+                const Samples& samples) {
     return {.group = std::move(group),
             .name = variant.name,
             .samples = samples,
@@ -43,7 +44,7 @@ void against_ceiling(Lab& lab, ComputeUse compute, const std::string& group) {
         {{"mip", {{"function", "mip"}}}, exact_cells()},
         {{"xray", {{"function", "xray"}, {"xray", {{"water_attenuation_per_mm", 0.012}}}}}, exact_cells()},
         {{"isosurface, skipping", surfaces}, exact_cells()}};
-    const std::vector<Quality> qualities = judge(lab, scene, judged, judged_scale);
+    const std::vector<PictureQuality> qualities = judge(lab, scene, judged, judged_scale);
     std::vector<Variant> variants{{"ceiling", json::object(), "bench.ray_ceiling"}};
     for (const Judged& one : judged) {
         variants.push_back(one.variant);
@@ -82,7 +83,7 @@ void of_colours(Lab& lab) {
         {{"accumulate, one channel", {{"accumulate", {{"channels", json::array()}}}}}, exact_composite()},
         {{"accumulate, three channels", json::object()}, exact_composite()},
         {{"accumulate, three channels, shaded", lit}, exact_composite()}};
-    const std::vector<Quality> qualities = judge(lab, scene, judged, judged_scale);
+    const std::vector<PictureQuality> qualities = judge(lab, scene, judged, judged_scale);
     std::vector<Variant> variants;
     for (const Judged& one : judged) {
         variants.push_back(one.variant);
@@ -117,7 +118,7 @@ void run_steps(Lab& lab) {
                               nullptr});
         }
     }
-    const std::vector<Quality> qualities = judge(lab, scene, judged, judged_scale);
+    const std::vector<PictureQuality> qualities = judge(lab, scene, judged, judged_scale);
     std::vector<Variant> variants;
     for (const Judged& one : judged) {
         variants.push_back(one.variant);

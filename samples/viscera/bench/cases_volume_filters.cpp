@@ -177,7 +177,7 @@ gl::Program make_program(Lab& lab, const ReconstructionParams& params, bool atla
 namespace {
 
 /// One filter on one signal.
-struct Shot {
+struct FilterShot {
     FilterCase filter;
     int voxels;
     volume::Storage storage;
@@ -194,7 +194,8 @@ struct Shot {
 };
 
 /// `linear`: the cost of one fetch of the texture unit, which is set by its own row.
-void run_shot(Lab& lab, Assets& assets, const volume::Source& signal, const Shot& shot, Samples& linear) {
+void run_shot(Lab& lab, Assets& assets, const volume::Source& signal, const FilterShot& shot,
+              Samples& linear) {
     const ReconstructionParams params{shot.filter.filter, shot.filter.prefilter};
     std::shared_ptr<const volume::Source> coefficients;
     if (params.uses_coefficients()) {

@@ -56,7 +56,7 @@ void run_quality(Lab& lab) {
     for (const Knob& knob : knobs()) {
         judged.push_back({{knob.name, knob.changes}, judged.empty() ? exact_composite() : json()});
     }
-    const std::vector<Quality> qualities = judge(lab, scene, judged, judged_scale);
+    const std::vector<PictureQuality> qualities = judge(lab, scene, judged, judged_scale);
     std::vector<Variant> variants;
     for (const Judged& one : judged) {
         variants.push_back(one.variant);

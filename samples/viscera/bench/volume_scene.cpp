@@ -62,7 +62,8 @@ nlohmann::json exact_cells() {
     return changes;
 }
 
-std::vector<Quality> judge(Lab& lab, const VolumeScene& scene, std::span<const Judged> judged, double scale) {
+std::vector<PictureQuality> judge(Lab& lab, const VolumeScene& scene, std::span<const Judged> judged,
+                                  double scale) {
     std::vector<Variant> variants;
     for (const Judged& one : judged) {
         variants.push_back(one.variant);
@@ -76,7 +77,7 @@ std::vector<Quality> judge(Lab& lab, const VolumeScene& scene, std::span<const J
     Frame frame = stage.renderer().still(0.0);
     frame.host_state = HostStatePolicy::host_resets;  // what an earlier renderer left in use is gone
     (void)stage.renderer().render(frame);
-    std::vector<Quality> qualities;
+    std::vector<PictureQuality> qualities;
     Image exact;
     std::size_t next = 0;
     for (const Judged& one : judged) {

@@ -47,7 +47,7 @@ class VolumeScene {
 inline constexpr std::string_view exact_name = "own exact picture";
 
 /// How a variant differs from the exact picture, and how many samples it takes.
-struct Quality {
+struct PictureQuality {
     CompareResult difference;
     double samples_per_pixel = 0.0;
 };
@@ -57,8 +57,8 @@ struct Judged {
     Variant variant;
     nlohmann::json exact;
 };
-[[nodiscard]] std::vector<Quality> judge(Lab& lab, const VolumeScene& scene, std::span<const Judged> judged,
-                                         double scale);
+[[nodiscard]] std::vector<PictureQuality> judge(Lab& lab, const VolumeScene& scene,
+                                                std::span<const Judged> judged, double scale);
 
 /// Moves the eye by a billionth of a millimetre a frame, so that nothing is cached and nothing changes.
 void nudge(Frame& frame);
